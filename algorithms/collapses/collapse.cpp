@@ -12,6 +12,7 @@
 
 #include <collapses/collapse_rounds.hpp>
 #include <collapses/judge_triangles.hpp>
+#include <projection/by_criterion.hpp>
 #include <surfaces/probed_colours.hpp>
 #include <surfaces/require_simplices.hpp>
 
@@ -95,7 +96,7 @@ void renew(Surface<3>& surface, const Hierarchy<Real>& hierarchy, std::size_t at
     surface.normals.clear();
     if (attributes > 0) {
         const detail::ProbePoints data = [&](std::span<const Point> points) {
-            return probe<Real>(hierarchy, points);
+            return engine::probe(hierarchy, points);
         };
         engine::ProbedColours(surface, data).colour_from(0);
     }

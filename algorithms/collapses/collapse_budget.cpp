@@ -17,6 +17,7 @@
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/by_criterion.hpp>
 #include <walk/frontier.hpp>
 
 namespace nestgrid::detail {
@@ -186,8 +187,8 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
     const IsosurfaceOptions of_trial = of_trials(options);
     const auto collapse_within = [&](double error, std::uint64_t& triangles) {
         Isosurface<3> result =
-            isosurface<3>(hierarchy, isovalue, *criterion_at(collapse_start * error), bounds.bounds,
-                          of_trial, executor);
+            engine::isosurface<3>(hierarchy, isovalue, *criterion_at(collapse_start * error),
+                                  bounds.bounds, of_trial, executor);
         Surface<3>& surface = complete(result);
         triangles += surface.simplices.size();
         collapse(surface, hierarchy, isovalue, bounds.bounds, {.error = error}, executor);

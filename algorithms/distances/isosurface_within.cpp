@@ -11,6 +11,7 @@
 #include <distances/far_points.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/by_criterion.hpp>
 
 namespace nestgrid::detail {
 
@@ -100,7 +101,8 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
                                         ? fine_indicator(hierarchy, points, options.progress)
                                         : SweptIndicator({}, {}, hierarchy.epoch());
         const auto draw = [&](const IsosurfaceOptions& how) {
-            return isosurface<3>(hierarchy, isovalue, *criterion(fine), bounds, how, executor);
+            return engine::isosurface<3>(hierarchy, isovalue, *criterion(fine), bounds, how,
+                                         executor);
         };
         const Isosurface<3> drawn = draw(searched);
         if (drawn.cancelled) throw Cancelled{};

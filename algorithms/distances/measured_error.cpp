@@ -10,6 +10,7 @@
 
 #include <distances/closest_points.hpp>
 #include <distances/surface_points.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/error.hpp>
 
@@ -120,13 +121,12 @@ Measured measure_distance(const Surface<3>& from, const Surface<3>& to, std::siz
 }
 
 /// |U - C| at the points of a surface. Points that rounding has put outside the grid do not count.
-template <class Real>
-Measured measure_values(const Surface<3>& surface, const Hierarchy<Real>& hierarchy,
-                        double isovalue, std::size_t points, const Executor& executor) {
+Measured measure_values(const Surface<3>& surface, const Prerolls& prerolls, double isovalue,
+                        std::size_t points, const Work& work) {
     Sums sums;
     engine::SurfacePoints some;  // so many that a walk is worth it
     const auto look = [&] {
-        const ProbeResult probed = probe(hierarchy, some.x);
+        const ProbeResult probed = probe(prerolls, some.x, {}, work);
         for (std::size_t i = 0; i < some.x.size(); ++i) {
             if (!probed.found(i)) continue;
             sums.add(std::abs(probed.values[i * probed.components] - isovalue), some.area[i]);
@@ -134,7 +134,7 @@ Measured measure_values(const Surface<3>& surface, const Hierarchy<Real>& hierar
         some = {};
     };
     measure_surface<engine::SurfacePoints>(
-        surface, points, executor,
+        surface, points, work.executor,
         [](engine::SurfacePoints at, engine::SurfacePoints& result) { result = std::move(at); },
         [&](const engine::SurfacePoints& at) {
             some.x.insert(some.x.end(), at.x.begin(), at.x.end());
@@ -147,25 +147,24 @@ Measured measure_values(const Surface<3>& surface, const Hierarchy<Real>& hierar
 
 }  // namespace
 
-template <class Real>
-MeasuredError measure_error(const Surface<3>& drawn, const Surface<3>& whole,
-                            const Hierarchy<Real>& hierarchy, double isovalue, std::size_t points,
-                            const Executor& executor) {
-    hierarchy.facts().require_dimension(3);
+MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn,
+                            const Surface<3>& whole, double isovalue, std::size_t points,
+                            const Work& work) {
+    prerolls.field().facts().require_dimension(3);
     if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
     if (points == 0) throw InvalidInput("an error cannot be measured at no point");
     MeasuredError error;
-    error.value = measure_values(drawn, hierarchy, isovalue, points, executor);
-    error.distance = measure_distance(drawn, whole, points, executor, error);
-    error.back = measure_distance(whole, drawn, points, executor, error);
+    error.value = measure_values(drawn, prerolls, isovalue, points, work);
+    error.distance = measure_distance(drawn, whole, points, work.executor, error);
+    error.back = measure_distance(whole, drawn, points, work.executor, error);
     return error;
 }
 
-template MeasuredError measure_error<float>(const Surface<3>&, const Surface<3>&,
-                                            const Hierarchy<float>&, double, std::size_t,
-                                            const Executor&);
-template MeasuredError measure_error<double>(const Surface<3>&, const Surface<3>&,
-                                             const Hierarchy<double>&, double, std::size_t,
-                                             const Executor&);
+MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
+                            std::size_t points, const Work& work) {
+    const Isosurface<3> whole =
+        isosurface<3>(prerolls, isovalue, {.threshold = 0}, {.elements = false}, work);
+    return measure_error(prerolls, drawn, whole.surface, isovalue, points, work);
+}
 
 }  // namespace nestgrid

@@ -1,28 +1,27 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nestgrid/algorithms/count_triangles.hpp>
-
 #include <graphs/with_graph.hpp>
+#include <projection/by_criterion.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Criterion& criterion, const Bounds& bounds,
                                              std::uint64_t most, const ShadingOptions& options,
                                              const Executor& executor) {
-    const auto count = [&](const engine::Graph<Real>& graph) -> std::optional<std::uint64_t> {
+    const auto count = [&](const Graph<Real>& graph) -> std::optional<std::uint64_t> {
         Surface<3> element;
-        engine::Triangulation<Real> drawing(graph, {element, false});
+        Triangulation<Real> drawing(graph, {element, false});
         drawing.count_only(most);
         try {
             drawing.run(executor, options.progress);
-        } catch (const engine::OverLimit&) {
+        } catch (const OverLimit&) {
             return std::nullopt;
         }
         return drawing.triangles();
     };
-    return engine::with_graph(hierarchy, 0, criterion, bounds, options, false, count);
+    return with_graph(hierarchy, 0, criterion, bounds, options, false, count);
 }
 
 template std::optional<std::uint64_t> count_triangles(const Hierarchy<float>&, const Criterion&,
@@ -32,4 +31,4 @@ template std::optional<std::uint64_t> count_triangles(const Hierarchy<double>&, 
                                                       const Bounds&, std::uint64_t,
                                                       const ShadingOptions&, const Executor&);
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -32,33 +32,9 @@ Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const Criter
                       [&](const Graph<Real>& graph) { return draw(graph, options, executor); });
 }
 
-template <class Real>
-Shading triangulate(const Hierarchy<Real>& hierarchy, double scale,
-                    const HierarchicalIndicator& indicator, const ShadingOptions& options,
-                    const Executor& executor) {
-    hierarchy.facts().require_dimension(2);
-    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
-    const Threshold s(&indicator, options.threshold);
-    return triangulate(hierarchy, scale, s, indicator, options, executor);
-}
-
-template <class Real>
-Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const ShadingOptions& options,
-                    const Executor& executor) {
-    hierarchy.facts().require_dimension(2);
-    const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);
-    return triangulate(hierarchy, scale, indicator, options, executor);
-}
-
-#define NESTGRID_INSTANTIATE(Real)                                                                \
-    template Shading triangulate(const Hierarchy<Real>&, double, const Criterion&, const Bounds&, \
-                                 const ShadingOptions&, const Executor&);                         \
-    template Shading triangulate(const Hierarchy<Real>&, double, const HierarchicalIndicator&,    \
-                                 const ShadingOptions&, const Executor&);                         \
-    template Shading triangulate(const Hierarchy<Real>&, double, const ShadingOptions&,           \
-                                 const Executor&);
-NESTGRID_INSTANTIATE(float)
-NESTGRID_INSTANTIATE(double)
-#undef NESTGRID_INSTANTIATE
+template Shading triangulate(const Hierarchy<float>&, double, const Criterion&, const Bounds&,
+                             const ShadingOptions&, const Executor&);
+template Shading triangulate(const Hierarchy<double>&, double, const Criterion&, const Bounds&,
+                             const ShadingOptions&, const Executor&);
 
 }  // namespace nestgrid::engine

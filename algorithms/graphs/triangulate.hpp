@@ -15,14 +15,4 @@ namespace nestgrid::engine {
 template <class Real>
 Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
                     const Bounds& bounds, const ShadingOptions& options, const Executor& executor);
-/// Draws with S from options.threshold.
-template <class Real>
-Shading triangulate(const Hierarchy<Real>& hierarchy, double scale,
-                    const HierarchicalIndicator& indicator, const ShadingOptions& options,
-                    const Executor& executor);
-/// Draws with S from options.threshold, after a preroll.
-template <class Real>
-Shading triangulate(const Hierarchy<Real>& hierarchy, double scale, const ShadingOptions& options,
-                    const Executor& executor);
-
 }  // namespace nestgrid::engine

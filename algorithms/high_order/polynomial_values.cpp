@@ -6,6 +6,7 @@
 
 #include <high_order/virtual_elements.hpp>
 #include <nestgrid/algorithms/polynomial_values.hpp>
+#include <projection/by_criterion.hpp>
 #include <surfaces/node_gradients.hpp>
 #include <surfaces/probed_colours.hpp>
 
@@ -20,7 +21,7 @@ public:
         : data_{data.data_.get()} {
         // At a tolerance that all leaves are within, elements are those of the hierarchy.
         const VirtualRefinement leaves(data, {.tolerance = std::numeric_limits<double>::max()});
-        probed = nestgrid::probe<double>(leaves, points);
+        probed = probe<double>(leaves, points);
         const auto elements = probed.elements.as<VirtualElement>();
         for (std::size_t i = 0; i < points.size(); ++i) {
             leaf_.push_back(probed.found(i) ? elements[probed.element_of[i]].leaf

@@ -163,28 +163,20 @@ bool cuts_are_errors(const HierarchyFacts& facts) {
     return facts.only_shape == Shape::tetrahedron || facts.only_shape == Shape::triangle;
 }
 
-SweptIndicator cut_deviations(const Hierarchy<float>& hierarchy, std::span<const double> isovalues,
+SweptIndicator cut_deviations(const FieldOnGrid& field, std::span<const double> isovalues,
                               const Bounds& bounds, const Spread& spread,
                               const Executor& executor) {
-    return engine::measure_cuts(hierarchy, {isovalues, &bounds, false}, spread, executor);
+    return field.visit([&](const auto& hierarchy) {
+        return engine::measure_cuts(hierarchy, {isovalues, &bounds, false}, spread, executor);
+    });
 }
 
-SweptIndicator cut_deviations(const Hierarchy<double>& hierarchy, std::span<const double> isovalues,
-                              const Bounds& bounds, const Spread& spread,
-                              const Executor& executor) {
-    return engine::measure_cuts(hierarchy, {isovalues, &bounds, false}, spread, executor);
-}
-
-SweptIndicator slope_deviations(const Hierarchy<float>& hierarchy,
-                                std::span<const double> isovalues, const Bounds& bounds,
-                                const Spread& spread, const Executor& executor) {
-    return engine::measure_cuts(hierarchy, {isovalues, &bounds, true}, spread, executor);
-}
-
-SweptIndicator slope_deviations(const Hierarchy<double>& hierarchy,
-                                std::span<const double> isovalues, const Bounds& bounds,
-                                const Spread& spread, const Executor& executor) {
-    return engine::measure_cuts(hierarchy, {isovalues, &bounds, true}, spread, executor);
+SweptIndicator slope_deviations(const FieldOnGrid& field, std::span<const double> isovalues,
+                                const Bounds& bounds, const Spread& spread,
+                                const Executor& executor) {
+    return field.visit([&](const auto& hierarchy) {
+        return engine::measure_cuts(hierarchy, {isovalues, &bounds, true}, spread, executor);
+    });
 }
 
 }  // namespace nestgrid

@@ -80,26 +80,17 @@ private:
 
 }  // namespace
 
-SweptIndicator geometry_indicator(const Hierarchy<float>& hierarchy,
-                                  const GeometryOptions& options) {
+SweptIndicator geometry_indicator(const FieldOnGrid& field, const GeometryOptions& options) {
     PositionSource source;
-    return engine::sweep_source(hierarchy, source, options.spread);
+    return field.visit([&](const auto& hierarchy) {
+        return engine::sweep_source(hierarchy, source, options.spread);
+    });
 }
 
-SweptIndicator geometry_indicator(const Hierarchy<double>& hierarchy,
-                                  const GeometryOptions& options) {
-    PositionSource source;
-    return engine::sweep_source(hierarchy, source, options.spread);
-}
-
-SweptIndicator position_bounds(const Hierarchy<float>& hierarchy) {
+SweptIndicator position_bounds(const FieldOnGrid& field) {
     PositionBoundSource source;
-    return engine::sweep_source(hierarchy, source, {});
-}
-
-SweptIndicator position_bounds(const Hierarchy<double>& hierarchy) {
-    PositionBoundSource source;
-    return engine::sweep_source(hierarchy, source, {});
+    return field.visit(
+        [&](const auto& hierarchy) { return engine::sweep_source(hierarchy, source, {}); });
 }
 
 }  // namespace nestgrid

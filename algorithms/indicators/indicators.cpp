@@ -21,38 +21,31 @@ using Input = IndicatorInput;
 
 SweptIndicator make_visual(const FieldOnGrid& field, const Input& input) {
     const VisualOptions options{.tau = 0x1p-20 * input.range, .spread = input.spread};
-    return field.visit([&](const auto& h) { return visual_indicator(h, options); });
+    return visual_indicator(field, options);
 }
 
 SweptIndicator make_numerical(const FieldOnGrid& field, const Input& input) {
-    return field.visit(
-        [&](const auto& h) { return numerical_indicator(h, {.spread = input.spread}); });
+    return numerical_indicator(field, {.spread = input.spread});
 }
 
 SweptIndicator make_wavelet(const FieldOnGrid& field, const Input& input) {
-    return field.visit(
-        [&](const auto& h) { return wavelet_indicator(h, {.spread = input.spread}); });
+    return wavelet_indicator(field, {.spread = input.spread});
 }
 
 SweptIndicator make_norm(const FieldOnGrid& field, const Input& input) {
-    return field.visit([&](const auto& h) { return norm_indicator(h, {.spread = input.spread}); });
+    return norm_indicator(field, {.spread = input.spread});
 }
 
 SweptIndicator make_geometry(const FieldOnGrid& field, const Input& input) {
-    return field.visit(
-        [&](const auto& h) { return geometry_indicator(h, {.spread = input.spread}); });
+    return geometry_indicator(field, {.spread = input.spread});
 }
 
 SweptIndicator make_cut(const FieldOnGrid& field, const Input& input) {
-    return field.visit([&](const auto& h) {
-        return cut_deviations(h, input.isovalues, *input.bounds, input.spread, input.executor);
-    });
+    return cut_deviations(field, input.isovalues, *input.bounds, input.spread, input.executor);
 }
 
 SweptIndicator make_slope(const FieldOnGrid& field, const Input& input) {
-    return field.visit([&](const auto& h) {
-        return slope_deviations(h, input.isovalues, *input.bounds, input.spread, input.executor);
-    });
+    return slope_deviations(field, input.isovalues, *input.bounds, input.spread, input.executor);
 }
 
 const std::array<IndicatorKind, 9> all{{

@@ -50,12 +50,8 @@ SweptIndicator sweep_diameters(const Hierarchy<Real>& hierarchy, const Spread& s
 
 }  // namespace
 
-SweptIndicator mesh_size(const Hierarchy<float>& hierarchy, const Spread& spread) {
-    return sweep_diameters(hierarchy, spread);
-}
-
-SweptIndicator mesh_size(const Hierarchy<double>& hierarchy, const Spread& spread) {
-    return sweep_diameters(hierarchy, spread);
+SweptIndicator mesh_size(const FieldOnGrid& field, const Spread& spread) {
+    return field.visit([&](const auto& hierarchy) { return sweep_diameters(hierarchy, spread); });
 }
 
 }  // namespace nestgrid

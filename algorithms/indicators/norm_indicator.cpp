@@ -72,12 +72,9 @@ SweptIndicator sweep_norms(const Hierarchy<Real>& hierarchy, const NormOptions& 
 
 }  // namespace engine
 
-SweptIndicator norm_indicator(const Hierarchy<float>& hierarchy, const NormOptions& options) {
-    return engine::sweep_norms(hierarchy, options);
-}
-
-SweptIndicator norm_indicator(const Hierarchy<double>& hierarchy, const NormOptions& options) {
-    return engine::sweep_norms(hierarchy, options);
+SweptIndicator norm_indicator(const FieldOnGrid& field, const NormOptions& options) {
+    return field.visit(
+        [&](const auto& hierarchy) { return engine::sweep_norms(hierarchy, options); });
 }
 
 }  // namespace nestgrid

@@ -168,14 +168,9 @@ SweptIndicator sweep_jumps(const Hierarchy<Real>& hierarchy, const NumericalOpti
 
 }  // namespace engine
 
-SweptIndicator numerical_indicator(const Hierarchy<float>& hierarchy,
-                                   const NumericalOptions& options) {
-    return engine::sweep_jumps(hierarchy, options);
-}
-
-SweptIndicator numerical_indicator(const Hierarchy<double>& hierarchy,
-                                   const NumericalOptions& options) {
-    return engine::sweep_jumps(hierarchy, options);
+SweptIndicator numerical_indicator(const FieldOnGrid& field, const NumericalOptions& options) {
+    return field.visit(
+        [&](const auto& hierarchy) { return engine::sweep_jumps(hierarchy, options); });
 }
 
 }  // namespace nestgrid

@@ -66,16 +66,11 @@ private:
 
 }  // namespace
 
-SweptIndicator measured_indicator(const Hierarchy<float>& hierarchy, const Measure& measure,
+SweptIndicator measured_indicator(const FieldOnGrid& field, const Measure& measure,
                                   const Spread& spread) {
     MeasureSource source(measure);
-    return engine::sweep_source(hierarchy, source, spread);
-}
-
-SweptIndicator measured_indicator(const Hierarchy<double>& hierarchy, const Measure& measure,
-                                  const Spread& spread) {
-    MeasureSource source(measure);
-    return engine::sweep_source(hierarchy, source, spread);
+    return field.visit(
+        [&](const auto& hierarchy) { return engine::sweep_source(hierarchy, source, spread); });
 }
 
 }  // namespace nestgrid

@@ -117,12 +117,9 @@ SweptIndicator sweep_normals(const Hierarchy<Real>& hierarchy, const VisualOptio
 
 }  // namespace engine
 
-SweptIndicator visual_indicator(const Hierarchy<float>& hierarchy, const VisualOptions& options) {
-    return engine::sweep_normals(hierarchy, options);
-}
-
-SweptIndicator visual_indicator(const Hierarchy<double>& hierarchy, const VisualOptions& options) {
-    return engine::sweep_normals(hierarchy, options);
+SweptIndicator visual_indicator(const FieldOnGrid& field, const VisualOptions& options) {
+    return field.visit(
+        [&](const auto& hierarchy) { return engine::sweep_normals(hierarchy, options); });
 }
 
 }  // namespace nestgrid

@@ -69,13 +69,9 @@ SweptIndicator sweep_details(const Hierarchy<Real>& hierarchy, const WaveletOpti
 
 }  // namespace engine
 
-SweptIndicator wavelet_indicator(const Hierarchy<float>& hierarchy, const WaveletOptions& options) {
-    return engine::sweep_details(hierarchy, options);
-}
-
-SweptIndicator wavelet_indicator(const Hierarchy<double>& hierarchy,
-                                 const WaveletOptions& options) {
-    return engine::sweep_details(hierarchy, options);
+SweptIndicator wavelet_indicator(const FieldOnGrid& field, const WaveletOptions& options) {
+    return field.visit(
+        [&](const auto& hierarchy) { return engine::sweep_details(hierarchy, options); });
 }
 
 }  // namespace nestgrid

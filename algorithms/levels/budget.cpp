@@ -18,6 +18,7 @@ template <int dimension, class Real>
 TriangleBudget find_threshold(const Levels<Real>& levels, const MakeCriterion& criterion_at,
                               const SearchBounds& bounds, std::uint64_t max_triangles,
                               const IsosurfaceOptions& options, const Executor& executor) {
+    levels.hierarchy->facts().require_one_process("a number of triangles");
     return least_threshold(
         [&](double threshold, std::uint64_t most) {
             return count_simplices<dimension>(levels, *criterion_at(threshold), bounds.bounds, most,
@@ -28,15 +29,16 @@ TriangleBudget find_threshold(const Levels<Real>& levels, const MakeCriterion& c
 
 template <int dimension, class Real>
 Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator& indicator,
-                        const IsosurfaceOptions& options, const Executor& executor) {
-    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
-    if (options.max_triangles == 0) return {&indicator, options.threshold};
+                        const Projection& projection, const IsosurfaceOptions& options,
+                        const Executor& executor) {
+    projection.check();
+    if (projection.max_triangles == 0) return {&indicator, projection.least_threshold()};
     const MakeCriterion everywhere = [&](double threshold) {
         return std::make_unique<const Threshold>(&indicator, threshold);
     };
     const TriangleBudget best = find_threshold<dimension>(
         levels, everywhere, {indicator, indicator.greatest() - indicator.least()},
-        options.max_triangles, options, executor);
+        projection.max_triangles, options, executor);
     return {&indicator, best.threshold};
 }
 
@@ -56,37 +58,16 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
 
 }  // namespace detail
 
-template <int dimension, class Real>
-Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
-                        const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
-                        const Executor& executor) {
-    const engine::SharedNodes* const shared = hierarchy.facts().shared;
-    std::optional<Threshold> criterion;
-    engine::together(shared, "isosurfaces", [&] {
-        hierarchy.facts().require_dimension(dimension);
-        if (options.max_triangles != 0) {
-            hierarchy.facts().require_one_process("a number of triangles");
-        }
-        const auto levels =
-            engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
-        criterion = engine::criterion_for<dimension>(levels, indicator, options, executor);
-    });
-    return *criterion;
-}
-
 #define NESTGRID_INSTANTIATE(dimension, Real)                                                      \
     template TriangleBudget engine::find_threshold<dimension>(                                     \
         const engine::Levels<Real>&, const detail::MakeCriterion&, const detail::SearchBounds&,    \
         std::uint64_t, const IsosurfaceOptions&, const Executor&);                                 \
     template Threshold engine::criterion_for<dimension>(                                           \
-        const engine::Levels<Real>&, const HierarchicalIndicator&, const IsosurfaceOptions&,       \
-        const Executor&);                                                                          \
+        const engine::Levels<Real>&, const HierarchicalIndicator&, const Projection&,              \
+        const IsosurfaceOptions&, const Executor&);                                                \
     template TriangleBudget detail::find_threshold<dimension>(                                     \
         const Hierarchy<Real>&, double, const detail::MakeCriterion&, const detail::SearchBounds&, \
-        std::uint64_t, const IsosurfaceOptions&, const Executor&);                                 \
-    template Threshold criterion_for<dimension>(const Hierarchy<Real>&, double,                    \
-                                                const HierarchicalIndicator&,                      \
-                                                const IsosurfaceOptions&, const Executor&);
+        std::uint64_t, const IsosurfaceOptions&, const Executor&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)
 NESTGRID_INSTANTIATE(3, float)

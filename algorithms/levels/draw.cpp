@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/by_criterion.hpp>
 #include <projection/made_for_ranks.hpp>
 #include <ranks/agreement.hpp>
 
@@ -234,32 +234,32 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     return results;
 }
 
-}  // namespace engine
-
-namespace detail {
-
 template <int dimension, class Real>
-std::vector<Isosurface<dimension>> draw_isosurfaces(
-    const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
-    const SurfaceTargets<dimension>& targets, const Criterion& criterion, const Bounds& bounds,
-    const IsosurfaceOptions& options, const Executor& executor) {
-    engine::Levels<Real> levels{&hierarchy, {}};
-    engine::together(hierarchy.facts().shared, "isosurfaces",
-                     [&] { levels = engine::isosurface_levels(hierarchy, isovalues); });
-    return engine::draw_levels<dimension>(levels, targets, criterion, bounds, options, executor);
+std::vector<Isosurface<dimension>> isosurfaces(const Hierarchy<Real>& hierarchy,
+                                               std::span<const double> isovalues,
+                                               const Targets<dimension>& targets,
+                                               const Criterion& criterion, const Bounds& bounds,
+                                               const IsosurfaceOptions& options,
+                                               const Executor& executor) {
+    Levels<Real> levels{&hierarchy, {}};
+    together(hierarchy.facts().shared, "isosurfaces", [&] {
+        hierarchy.facts().require_dimension(dimension);
+        levels = isosurface_levels(hierarchy, isovalues);
+    });
+    return draw_levels<dimension>(levels, targets, criterion, bounds, options, executor);
 }
 
-}  // namespace detail
+}  // namespace engine
 
-#define NESTGRID_INSTANTIATE(dimension, Real)                                                    \
-    template std::optional<std::uint64_t> engine::count_simplices<dimension>(                    \
-        const engine::Levels<Real>&, const Criterion&, const Bounds&, std::uint64_t,             \
-        const IsosurfaceOptions&, const Executor&);                                              \
-    template std::vector<Isosurface<dimension>> engine::draw_levels<dimension>(                  \
-        const engine::Levels<Real>&, const detail::SurfaceTargets<dimension>&, const Criterion&, \
-        const Bounds&, const IsosurfaceOptions&, const Executor&);                               \
-    template std::vector<Isosurface<dimension>> detail::draw_isosurfaces<dimension>(             \
-        const Hierarchy<Real>&, std::span<const double>, const SurfaceTargets<dimension>&,       \
+#define NESTGRID_INSTANTIATE(dimension, Real)                                                      \
+    template std::optional<std::uint64_t> engine::count_simplices<dimension>(                      \
+        const engine::Levels<Real>&, const Criterion&, const Bounds&, std::uint64_t,               \
+        const IsosurfaceOptions&, const Executor&);                                                \
+    template std::vector<Isosurface<dimension>> engine::draw_levels<dimension>(                    \
+        const engine::Levels<Real>&, const detail::SurfaceTargets<dimension>&, const Criterion&,   \
+        const Bounds&, const IsosurfaceOptions&, const Executor&);                                 \
+    template std::vector<Isosurface<dimension>> engine::isosurfaces<dimension>(                    \
+        const Hierarchy<Real>&, std::span<const double>, const detail::SurfaceTargets<dimension>&, \
         const Criterion&, const Bounds&, const IsosurfaceOptions&, const Executor&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)

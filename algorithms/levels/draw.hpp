@@ -8,6 +8,7 @@
 
 #include <levels/level_set.hpp>
 #include <nestgrid/algorithms/detail/surface_targets.hpp>
+#include <nestgrid/algorithms/projection.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
 namespace nestgrid::engine {
@@ -86,10 +87,11 @@ TriangleBudget find_threshold(const Levels<Real>& levels,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options,
                               const Executor& executor);
 
-/// S from options.threshold or options.max_triangles.
-/// \throw InvalidInput as find_threshold(), and where the threshold is negative or not a number
+/// S from the threshold or the number of triangles of a projection.
+/// \throw InvalidInput as find_threshold() and Projection::check()
 template <int dimension, class Real>
 Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator& indicator,
-                        const IsosurfaceOptions& options, const Executor& executor);
+                        const Projection& projection, const IsosurfaceOptions& options,
+                        const Executor& executor);
 
 }  // namespace nestgrid::engine

@@ -3,6 +3,10 @@
 #include <nestgrid/algorithms/isoband.hpp>
 
 #include <algorithm>
+#include <array>
+
+#include <nestgrid/error.hpp>
+#include <projection/by_criterion.hpp>
 
 namespace nestgrid {
 
@@ -43,8 +47,15 @@ void append_reversed(Surface<dimension>& to, const Surface<dimension>& from) {
     }
 }
 
-template <int dimension>
-Isosurface<dimension> detail::join_band(std::vector<Isosurface<dimension>> levels) {
+template <int dimension, class Real>
+Isosurface<dimension> engine::isoband(const Hierarchy<Real>& hierarchy, double low, double high,
+                                      const Criterion& criterion, const Bounds& bounds,
+                                      const IsosurfaceOptions& options, const Executor& executor) {
+    if (!(low < high)) throw InvalidInput("the lower isovalue is not below the upper one");
+    if (options.cap) throw InvalidInput("a band between two isovalues cannot be capped");
+    const std::array<double, 2> isovalues{low, high};
+    auto levels = isosurfaces<dimension>(hierarchy, std::span<const double>(isovalues), {},
+                                         criterion, bounds, options, executor);
     Isosurface<dimension>& band = levels[0];
     append_reversed(band.surface, levels[1].surface);
     band.counts.extracted += levels[1].counts.extracted;
@@ -55,7 +66,14 @@ Isosurface<dimension> detail::join_band(std::vector<Isosurface<dimension>> level
 
 template void append_reversed(Surface<2>&, const Surface<2>&);
 template void append_reversed(Surface<3>&, const Surface<3>&);
-template Isosurface<2> detail::join_band(std::vector<Isosurface<2>>);
-template Isosurface<3> detail::join_band(std::vector<Isosurface<3>>);
+#define NESTGRID_INSTANTIATE(dimension, Real)                                    \
+    template Isosurface<dimension> engine::isoband<dimension>(                   \
+        const Hierarchy<Real>&, double, double, const Criterion&, const Bounds&, \
+        const IsosurfaceOptions&, const Executor&);
+NESTGRID_INSTANTIATE(2, float)
+NESTGRID_INSTANTIATE(2, double)
+NESTGRID_INSTANTIATE(3, float)
+NESTGRID_INSTANTIATE(3, double)
+#undef NESTGRID_INSTANTIATE
 
 }  // namespace nestgrid

@@ -1,12 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nestgrid/algorithms/isolines.hpp>
+#include <projection/by_criterion.hpp>
 
-#include <nestgrid/algorithms/isosurfaces.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
-#include <nestgrid/error.hpp>
-
-namespace nestgrid {
+namespace nestgrid::engine {
 
 template <class Real>
 Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
@@ -15,7 +11,7 @@ Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> valu
     hierarchy.facts().require_one_process("a list of isolines");
     IsosurfaceOptions kept = options;
     kept.normals = kept.elements = kept.reference = false;
-    auto drawn = isosurfaces<2>(hierarchy, values, criterion, bounds, kept, executor);
+    auto drawn = isosurfaces<2>(hierarchy, values, {}, criterion, bounds, kept, executor);
     Isolines result;
     for (std::size_t i = 0; i < drawn.size(); ++i) {
         append_polylines(result.lines, drawn[i].surface, values[i]);
@@ -30,32 +26,9 @@ Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> valu
     return result;
 }
 
-template <class Real>
-Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                  const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
-                  const Executor& executor) {
-    if (options.max_triangles != 0) throw InvalidInput("a limit of segments is for one isoline");
-    const auto s = criterion_for<2>(hierarchy, 0, indicator, options, executor);
-    return isolines(hierarchy, values, s, indicator, options, executor);
-}
+template Isolines isolines(const Hierarchy<float>&, std::span<const double>, const Criterion&,
+                           const Bounds&, const IsosurfaceOptions&, const Executor&);
+template Isolines isolines(const Hierarchy<double>&, std::span<const double>, const Criterion&,
+                           const Bounds&, const IsosurfaceOptions&, const Executor&);
 
-template <class Real>
-Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                  const IsosurfaceOptions& options, const Executor& executor) {
-    const HierarchicalIndicator indicator(hierarchy, LeafErrors{}, executor);
-    return isolines(hierarchy, values, indicator, options, executor);
-}
-
-#define NESTGRID_INSTANTIATE(Real)                                                                \
-    template Isolines isolines(const Hierarchy<Real>&, std::span<const double>, const Criterion&, \
-                               const Bounds&, const IsosurfaceOptions&, const Executor&);         \
-    template Isolines isolines(const Hierarchy<Real>&, std::span<const double>,                   \
-                               const HierarchicalIndicator&, const IsosurfaceOptions&,            \
-                               const Executor&);                                                  \
-    template Isolines isolines(const Hierarchy<Real>&, std::span<const double>,                   \
-                               const IsosurfaceOptions&, const Executor&);
-NESTGRID_INSTANTIATE(float)
-NESTGRID_INSTANTIATE(double)
-#undef NESTGRID_INSTANTIATE
-
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -22,12 +22,18 @@ public:
     }
 
     const Isosurface<dimension>& draw(const HierarchicalIndicator& indicator, double isovalue,
+                                      const Projection& projection,
                                       const IsosurfaceOptions& options,
                                       const Executor& executor) override {
+        if (projection.criterion || !projection.asks_for_offsets()) {
+            throw InvalidInput(
+                "a series draws offsets within a threshold or a number of triangles only");
+        }
         engine::require_same_epoch(*hierarchy_, indicator);
         engine::require_options<dimension>(options);
         engine::set_isovalues(levels_, std::span<const double>(&isovalue, 1));
-        criterion_ = engine::criterion_for<dimension>(levels_, indicator, options, executor);
+        criterion_ =
+            engine::criterion_for<dimension>(levels_, indicator, projection, options, executor);
         search_.emplace(walk_, levels_.levels, criterion_, indicator);
         options_ = options;
         result_.surface.clear();

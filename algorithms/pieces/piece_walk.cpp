@@ -83,11 +83,11 @@ void PieceWalk::raise_error_bound(const View& view, double residual) {
 }
 
 void require_drawable(const DiscontinuousData& data, int dimension,
-                      const ElementDeviations* deviations, const DiscontinuousOptions& options) {
+                      const DiscontinuousOptions& options) {
     data.grid().facts().require_dimension(dimension);
     if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
     if (!(options.flatness >= 0)) throw InvalidInput("the flatness is negative or not a number");
-    if (deviations != nullptr && deviations->epoch() != data.grid().epoch()) {
+    if (options.deviations != nullptr && options.deviations->epoch() != data.grid().epoch()) {
         throw GridError("the grid has changed since the deviations of its elements were computed");
     }
 }

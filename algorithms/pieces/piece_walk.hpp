@@ -76,15 +76,16 @@ private:
 
 /// \throw InvalidInput, GridError as the functions of discontinuous.hpp say
 void require_drawable(const DiscontinuousData& data, int dimension,
-                      const ElementDeviations* deviations, const DiscontinuousOptions& options);
+                      const DiscontinuousOptions& options);
 
 /// Draws a surface. Measures deviations where the threshold needs them and none are given.
 /// \param make make(walk, deviations, part) returns a PieceWalk that draws into a part
 template <class Make>
 DiscontinuousSurface draw_pieces(const WidenedHierarchy<float>& hierarchy,
-                                 const DiscontinuousData& data, const ElementDeviations* deviations,
-                                 const DiscontinuousOptions& options, const Make& make) {
+                                 const DiscontinuousData& data, const DiscontinuousOptions& options,
+                                 const Make& make) {
     std::optional<ElementDeviations> own;
+    const ElementDeviations* deviations = options.deviations;
     if (deviations == nullptr && options.threshold > 0) deviations = &own.emplace(data);
     const Walk<double> walk(hierarchy, PieceWalk::needs);
     SurfacePart<3> part;

@@ -32,13 +32,12 @@ private:
 };
 
 DiscontinuousSurface triangulate(const DiscontinuousData& data, double scale,
-                                 const ElementDeviations* deviations,
                                  const DiscontinuousOptions& options) {
-    engine::require_drawable(data, 2, deviations, options);
+    engine::require_drawable(data, 2, options);
     if (!std::isfinite(scale)) {
         throw InvalidInput("the scale of the heights is not a finite number");
     }
-    return engine::draw_pieces(engine::widened(data, 0), data, deviations, options,
+    return engine::draw_pieces(engine::widened(data, 0), data, options,
                                [&](const auto& walk, const auto* d, auto& part) {
                                    return PieceShading(walk, data, d, options, scale, part);
                                });
@@ -46,21 +45,12 @@ DiscontinuousSurface triangulate(const DiscontinuousData& data, double scale,
 
 }  // namespace
 
-DiscontinuousSurface shading(const DiscontinuousData& data, const ElementDeviations& deviations,
-                             const DiscontinuousOptions& options) {
-    return triangulate(data, 0, &deviations, options);
-}
 DiscontinuousSurface shading(const DiscontinuousData& data, const DiscontinuousOptions& options) {
-    return triangulate(data, 0, nullptr, options);
-}
-DiscontinuousSurface height_field(const DiscontinuousData& data, double scale,
-                                  const ElementDeviations& deviations,
-                                  const DiscontinuousOptions& options) {
-    return triangulate(data, scale, &deviations, options);
+    return triangulate(data, 0, options);
 }
 DiscontinuousSurface height_field(const DiscontinuousData& data, double scale,
                                   const DiscontinuousOptions& options) {
-    return triangulate(data, scale, nullptr, options);
+    return triangulate(data, scale, options);
 }
 
 }  // namespace nestgrid

@@ -59,12 +59,12 @@ double PieceSlice::draw(const View& view, std::span<double> values) {
 }
 
 DiscontinuousSurface cut(const DiscontinuousData& data, const LevelFunction& function,
-                         const ElementDeviations* deviations, const DiscontinuousOptions& options) {
-    engine::require_drawable(data, 3, deviations, options);
+                         const DiscontinuousOptions& options) {
+    engine::require_drawable(data, 3, options);
     const LevelFunction* const functions[] = {&function};
     const engine::WidenedHierarchy<float> hierarchy = engine::widened(data, 1);
     const engine::PositionFunctions placed(functions, hierarchy, options.position_bounds);
-    return engine::draw_pieces(hierarchy, data, deviations, options,
+    return engine::draw_pieces(hierarchy, data, options,
                                [&](const auto& walk, const auto* d, auto& part) {
                                    return PieceSlice(walk, placed, data, d, options, part);
                                });
@@ -73,13 +73,8 @@ DiscontinuousSurface cut(const DiscontinuousData& data, const LevelFunction& fun
 }  // namespace
 
 DiscontinuousSurface slice(const DiscontinuousData& data, const LevelFunction& function,
-                           const ElementDeviations& deviations,
                            const DiscontinuousOptions& options) {
-    return cut(data, function, &deviations, options);
-}
-DiscontinuousSurface slice(const DiscontinuousData& data, const LevelFunction& function,
-                           const DiscontinuousOptions& options) {
-    return cut(data, function, nullptr, options);
+    return cut(data, function, options);
 }
 
 }  // namespace nestgrid

@@ -12,9 +12,10 @@
 #include <nestgrid/detail/shape_functions.hpp>
 #include <probes/box_descent.hpp>
 #include <probes/descent.hpp>
+#include <projection/by_criterion.hpp>
 #include <walk/hanging_nodes.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid::engine {
 
 namespace {
 
@@ -61,13 +62,13 @@ void in_parts(std::span<T> points, const Take& take) {
 /// \return whether it may have missed a point of an element
 template <class Real>
 bool descend_nested(const Question<Real>& question, std::span<const std::uint32_t> which,
-                    engine::FoundPoints<Real>& found) {
-    auto coarse = engine::search_coarse(question.hierarchy, question.points, which);
-    const engine::Needs needs{.values = true,
-                              .keys = question.needs_keys,
-                              .positions = question.criterion.wants_positions()};
-    const engine::Walk<Real> walk(question.hierarchy, needs, question.hanging);
-    engine::Descent<Real> descent(walk, question.criterion, found);
+                    FoundPoints<Real>& found) {
+    auto coarse = search_coarse(question.hierarchy, question.points, which);
+    const Needs needs{.values = true,
+                      .keys = question.needs_keys,
+                      .positions = question.criterion.wants_positions()};
+    const Walk<Real> walk(question.hierarchy, needs, question.hanging);
+    Descent<Real> descent(walk, question.criterion, found);
     in_parts(std::span(coarse.found), [&](auto some) { descent.run(some); });
     return coarse.any_deformed || !std::ranges::all_of(coarse.found, [&](const auto& in) {
                return found.found(in.point);
@@ -77,24 +78,24 @@ bool descend_nested(const Question<Real>& question, std::span<const std::uint32_
 /// Descends through boxes.
 template <class Real>
 void descend_in_boxes(const Question<Real>& question, std::span<const std::uint32_t> which,
-                      engine::FoundPoints<Real>& found) {
-    engine::Needs needs{.values = true, .keys = question.needs_keys, .positions = true};
+                      FoundPoints<Real>& found) {
+    Needs needs{.values = true, .keys = question.needs_keys, .positions = true};
     needs.placed = question.finest;
-    const engine::Walk<Real> walk(question.hierarchy, needs, question.hanging);
-    engine::Reach reach;
+    const Walk<Real> walk(question.hierarchy, needs, question.hanging);
+    Reach reach;
     if (!question.bounded()) {
         needs.values = false;
-        const engine::Walk<Real> whole(question.hierarchy, needs, question.hanging);
-        reach = engine::Reach(whole, question.criterion);
+        const Walk<Real> whole(question.hierarchy, needs, question.hanging);
+        reach = Reach(whole, question.criterion);
     }
-    engine::BoxDescent<Real> descent(walk, question.criterion, question.points, reach, found);
+    BoxDescent<Real> descent(walk, question.criterion, question.points, reach, found);
     in_parts(which, [&](auto some) { descent.run(some); });
 }
 
 template <class Real>
 ProbeResult answer(const Question<Real>& question) {
     const std::size_t count = question.points.size();
-    engine::FoundPoints<Real> found(question.hierarchy, count);
+    FoundPoints<Real> found(question.hierarchy, count);
     std::vector<std::uint32_t> left(count);
     std::iota(left.begin(), left.end(), 0U);
     bool missed = true;
@@ -113,7 +114,7 @@ ProbeResult answer(const Question<Real>& question) {
 template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
                   const Criterion& criterion, const Bounds& bounds) {
-    engine::require_sound(hierarchy, criterion, bounds);
+    require_sound(hierarchy, criterion, bounds);
     require_points(points);
     return answer<Real>({hierarchy, points, criterion, bounds.hanging(), true, false});
 }
@@ -121,10 +122,21 @@ ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> point
 template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points) {
     require_points(points);
-    const HangingNodes hanging = engine::find_hanging_nodes(hierarchy);
+    const HangingNodes hanging = find_hanging_nodes(hierarchy);
     const bool any = !hanging.empty();
     return answer<Real>({hierarchy, points, Exact{}, any ? &hanging : nullptr, any, true});
 }
+
+template ProbeResult probe(const Hierarchy<float>&, std::span<const Point>, const Criterion&,
+                           const Bounds&);
+template ProbeResult probe(const Hierarchy<double>&, std::span<const Point>, const Criterion&,
+                           const Bounds&);
+template ProbeResult probe(const Hierarchy<float>&, std::span<const Point>);
+template ProbeResult probe(const Hierarchy<double>&, std::span<const Point>);
+
+}  // namespace nestgrid::engine
+
+namespace nestgrid::detail {
 
 LineProbe make_line(const Point& from, const Point& to, std::size_t count) {
     if (count < 2) throw InvalidInput("a line is probed at two points or more");
@@ -144,19 +156,12 @@ std::vector<double> only_values(ProbeResult result, const Point& x) {
     return std::move(result.values);
 }
 
-template ProbeResult probe(const Hierarchy<float>&, std::span<const Point>, const Criterion&,
-                           const Bounds&);
-template ProbeResult probe(const Hierarchy<double>&, std::span<const Point>, const Criterion&,
-                           const Bounds&);
-template ProbeResult probe(const Hierarchy<float>&, std::span<const Point>);
-template ProbeResult probe(const Hierarchy<double>&, std::span<const Point>);
-
 }  // namespace nestgrid::detail
 
 namespace nestgrid {
 
 ProbeResult probe(const DiscontinuousData& data, std::span<const Point> points) {
-    ProbeResult result = detail::probe(data.grid(), points);
+    ProbeResult result = engine::probe(data.grid(), points);
     const auto components = static_cast<std::size_t>(data.components());
     result.components = components;
     result.values.assign(points.size() * components, std::numeric_limits<double>::quiet_NaN());

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <limits>
 
+#include <graphs/triangulate.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/collapse_colours.hpp>
+#include <nestgrid/algorithms/count_triangles.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
+#include <projection/by_criterion.hpp>
 #include <projection/drawn_within.hpp>
 
 namespace nestgrid {
@@ -66,11 +69,14 @@ Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunctio
         // Only a slice of all data is as near to its function as the grid allows.
         const bool moves = collapses && projection.slice_distance > 0;
         const AnyCriterion criterion = moves ? AnyCriterion(Exact{}) : criteria.at(first);
-        Projected<Slice> drawn{slice(hierarchy, function, criterion, bounds, options, executor)};
+        Projected<Slice> drawn{
+            engine::slice(hierarchy, function, criterion, bounds, options, executor)};
         begun = drawn.surface.simplices.size();
         if (drawn.cancelled) return drawn;
         const double tolerance = collapses ? first : projection.colour_tolerance;
-        if (tolerance > 0) refine_colours(drawn.surface, hierarchy, tolerance, criterion, bounds);
+        if (tolerance > 0) {
+            refine_colours(drawn.surface, hierarchy, tolerance, under(criterion, bounds));
+        }
         if (!collapses) return drawn;
         ColourCollapseOptions kept{.errors = {error}};
         Surface<3> whole;
@@ -100,12 +106,12 @@ Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<
         ShadingOptions flat = options;
         if (collapses) flat.flatness = std::min(flat.flatness, first);
         const AnyCriterion s = criteria.at(first);
-        Projected<Shading> drawn{scale ? height_field(hierarchy, *scale, s, bounds, flat, executor)
-                                       : shading(hierarchy, s, bounds, flat, executor)};
+        Projected<Shading> drawn{
+            engine::triangulate(hierarchy, scale.value_or(0), s, bounds, flat, executor)};
         begun = drawn.surface.simplices.size();
         if (drawn.cancelled) return drawn;
         if (projection.colour_tolerance > 0) {
-            refine_colours(drawn.surface, hierarchy, projection.colour_tolerance, s, bounds);
+            refine_colours(drawn.surface, hierarchy, projection.colour_tolerance, under(s, bounds));
         }
         if (!collapses) return drawn;
         double no_surface_error = 0;
@@ -120,16 +126,17 @@ Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<
     });
 }
 
-Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
+Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
                           const Projection& projection, const ShadingOptions& options,
                           const Work& work) {
-    engine::refuse_distance(projection);
-    engine::refuse_slice_distance(projection);
-    if (scale) engine::refuse_tolerance(projection);
+    engine::check_first(prerolls, projection, "shadings", [&] {
+        engine::refuse_distance(projection);
+        engine::refuse_slice_distance(projection);
+        if (scale) engine::refuse_tolerance(projection);
+    });
     const auto within = [&](const VirtualRefinement& fine) {
-        return scale ? height_field(fine, *scale, fine.criterion(), fine.bounds(), options,
-                                    work.executor)
-                     : shading(fine, fine.criterion(), fine.bounds(), options, work.executor);
+        return engine::triangulate(fine, scale.value_or(0), fine.criterion(), fine.bounds(),
+                                   options, work.executor);
     };
     if (auto drawn = engine::within_error<Shading>(prerolls, projection, work, 2, within)) {
         return *std::move(drawn);
@@ -142,24 +149,23 @@ Projected<Shading> shaded(Prerolls& prerolls, std::optional<double> scale,
 
 }  // namespace
 
-Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
+Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
                        const Projection& projection, const IsosurfaceOptions& options,
                        const Work& work) {
-    projection.check();
-    engine::refuse_distance(projection);
-    if (options.cap) engine::refuse_slice_distance(projection);
+    engine::check_first(prerolls, projection, "slices", [&] {
+        engine::refuse_distance(projection);
+        if (options.cap) engine::refuse_slice_distance(projection);
+    });
     const auto within = [&](const VirtualRefinement& fine) {
-        return slice(fine, function, fine.criterion(), fine.bounds(), options, work.executor);
+        return engine::slice(fine, function, fine.criterion(), fine.bounds(), options,
+                             work.executor);
     };
     if (auto drawn = engine::within_error<Slice>(prerolls, projection, work, 3, within)) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
         if (projection.draws_everything()) {
-            IsosurfaceOptions everything = options;
-            everything.threshold = 0;
-            everything.max_triangles = 0;
-            Projected<Slice> drawn{slice(hierarchy, function, everything, work.executor)};
+            Projected<Slice> drawn{engine::slice(hierarchy, function, options, work.executor)};
             if (projection.colour_tolerance > 0 && !drawn.cancelled) {
                 refine_colours(drawn.surface, hierarchy, projection.colour_tolerance);
             }
@@ -170,19 +176,57 @@ Projected<Slice> slice(Prerolls& prerolls, const LevelFunction& function,
     });
 }
 
-Projected<Slice> boundary_surface(Prerolls& prerolls, const Projection& projection,
+std::vector<Slice> detail::draw_slices(const Prerolls& prerolls, const SliceRequest& request,
+                                       const SurfaceTargets<3>& targets,
+                                       const Projection& projection,
+                                       const IsosurfaceOptions& options, const Work& work) {
+    engine::check_one_walk(prerolls, projection, "several slices");
+    return engine::draw_once(
+        prerolls, projection, request.isovalues, work, 3,
+        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+            return engine::slices(hierarchy, request, targets, criterion, bounds, options,
+                                  work.executor);
+        });
+}
+
+std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const SliceRequest& request,
+                                             const Projection& projection, std::uint64_t most,
+                                             const IsosurfaceOptions& options, const Work& work) {
+    engine::check_one_walk(prerolls, projection, "several slices");
+    return engine::draw_once(
+        prerolls, projection, request.isovalues, work, 3,
+        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+            return engine::count_triangles(hierarchy, request, criterion, bounds, most, options,
+                                           work.executor);
+        });
+}
+
+std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const Projection& projection,
+                                             std::uint64_t most, const ShadingOptions& options,
+                                             const Work& work) {
+    engine::check_one_walk(prerolls, projection, "shadings");
+    return engine::draw_once(
+        prerolls, projection, {}, work, 2,
+        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+            return engine::count_triangles(hierarchy, criterion, bounds, most, options,
+                                           work.executor);
+        });
+}
+
+Projected<Slice> boundary_surface(const Prerolls& prerolls, const Projection& projection,
                                   const IsosurfaceOptions& options, const Work& work) {
     engine::refuse_slice_distance(projection);
     return slice(prerolls, detail::Everywhere{}, projection, detail::capped(options), work);
 }
 
-Projected<Shading> shading(Prerolls& prerolls, const Projection& projection,
+Projected<Shading> shading(const Prerolls& prerolls, const Projection& projection,
                            const ShadingOptions& options, const Work& work) {
     return shaded(prerolls, std::nullopt, projection, options, work);
 }
 
-Projected<Shading> height_field(Prerolls& prerolls, double scale, const Projection& projection,
-                                const ShadingOptions& options, const Work& work) {
+Projected<Shading> height_field(const Prerolls& prerolls, double scale,
+                                const Projection& projection, const ShadingOptions& options,
+                                const Work& work) {
     return shaded(prerolls, scale, projection, options, work);
 }
 

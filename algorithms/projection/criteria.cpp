@@ -8,10 +8,14 @@
 
 namespace nestgrid {
 
-Criteria::Criteria(Prerolls& prerolls, Projection projection, std::span<const double> isovalues,
-                   const Work& work)
+Criteria::Criteria(const Prerolls& prerolls, Projection projection,
+                   std::span<const double> isovalues, const Work& work)
     : projection_{std::move(projection)} {
     projection_.check();
+    if (projection_.criterion) {
+        chosen_.bounds = {std::shared_ptr<void>(), projection_.bounds};
+        return;
+    }
     chosen_ = projection_.asks_for_everything()
                   ? prerolls.finest(work)
                   : prerolls.choose(projection_.indicator, projection_.blend, isovalues, work);
@@ -23,6 +27,7 @@ Criteria::Criteria(Prerolls& prerolls, Projection projection, std::span<const do
 }
 
 AnyCriterion Criteria::at(double threshold) const {
+    if (projection_.criterion) return AnyCriterion(projection_.criterion);
     const Indicator* const indicator = chosen_.indicator.get();
     if (indicator == nullptr) {
         if (threshold == 0) return Exact{};

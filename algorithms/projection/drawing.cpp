@@ -5,10 +5,10 @@
 #include <limits>
 
 #include <nestgrid/algorithms/collapse_budget.hpp>
-#include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/by_criterion.hpp>
 #include <projection/drawn_within.hpp>
 
 namespace nestgrid {
@@ -95,7 +95,8 @@ private:
         return *whole_;
     }
     Isosurface<3> by(const Criterion& criterion, const IsosurfaceOptions& options) const {
-        return isosurface<3>(hierarchy_, isovalue_, criterion, bounds(), options, executor_);
+        return engine::isosurface<3>(hierarchy_, isovalue_, criterion, bounds(), options,
+                                     executor_);
     }
     void collapse_into(Projected<Isosurface<3>>& drawn, const CollapseOptions& kept) const {
         drawn.collapsed = collapse(drawn.surface, hierarchy_, isovalue_, bounds(), kept, executor_);
@@ -134,7 +135,8 @@ double default_error(const HighOrder& data) {
     return range > 0 ? 1e-3 * range : 1;
 }
 
-Projection with_error(Prerolls& prerolls, Projection projection, const Work& work) {
+Projection with_error(const Prerolls& prerolls, Projection projection, const Work& work) {
+    if (projection.criterion) return projection;
     const std::shared_ptr<const HighOrder> data = prerolls.high_order(work);
     if (data == nullptr) return projection;
     if (projection.draws_everything()) {
@@ -146,13 +148,14 @@ Projection with_error(Prerolls& prerolls, Projection projection, const Work& wor
 }
 
 template <int dimension>
-Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
+Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double isovalue,
                                             const Projection& projection,
                                             const IsosurfaceOptions& options, const Work& work) {
-    check_isosurface(projection, options, dimension);
+    engine::check_first(prerolls, projection, "isosurfaces",
+                        [&] { check_isosurface(projection, options, dimension); });
     const auto within = [&](const VirtualRefinement& fine) {
-        return isosurface<dimension>(fine, isovalue, fine.criterion(), fine.bounds(), options,
-                                     work.executor);
+        return engine::isosurface<dimension>(fine, isovalue, fine.criterion(), fine.bounds(),
+                                             options, work.executor);
     };
     if (auto drawn = engine::within_error<Isosurface<dimension>>(prerolls, projection, work,
                                                                  dimension, within)) {
@@ -174,118 +177,91 @@ Projected<Isosurface<dimension>> isosurface(Prerolls& prerolls, double isovalue,
                                          executor);
             });
             static_cast<Isosurface<2>&>(drawn) =
-                isosurface<2>(hierarchy, isovalue, criteria.at(drawn.search.threshold),
-                              criteria.bounds(), options, executor);
+                engine::isosurface<2>(hierarchy, isovalue, criteria.at(drawn.search.threshold),
+                                      criteria.bounds(), options, executor);
         }
         return drawn;
     });
 }
-template Projected<Isosurface<2>> isosurface<2>(Prerolls&, double, const Projection&,
+template Projected<Isosurface<2>> isosurface<2>(const Prerolls&, double, const Projection&,
                                                 const IsosurfaceOptions&, const Work&);
-template Projected<Isosurface<3>> isosurface<3>(Prerolls&, double, const Projection&,
+template Projected<Isosurface<3>> isosurface<3>(const Prerolls&, double, const Projection&,
                                                 const IsosurfaceOptions&, const Work&);
 
 template <int dimension>
-std::vector<Isosurface<dimension>> isosurfaces(Prerolls& prerolls,
-                                               std::span<const double> isovalues,
-                                               const Projection& projection,
-                                               const IsosurfaceOptions& options, const Work& work) {
-    engine::check_one_walk(projection, "several isosurfaces");
-    const auto within = [&](const VirtualRefinement& fine) {
-        prerolls.field().facts().require_dimension(dimension);
-        return isosurfaces<dimension>(fine, isovalues, fine.criterion(), fine.bounds(), options,
-                                      work.executor);
-    };
-    if (auto drawn = engine::from_polynomials(prerolls, projection, work, within)) {
-        return *std::move(drawn);
-    }
-    return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
-        const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
-        return isosurfaces<dimension>(hierarchy, isovalues, criteria.criterion(), criteria.bounds(),
-                                      options, work.executor);
-    });
+std::vector<Isosurface<dimension>> detail::draw_isosurfaces(
+    const Prerolls& prerolls, std::span<const double> isovalues,
+    const SurfaceTargets<dimension>& targets, const Projection& projection,
+    const IsosurfaceOptions& options, const Work& work) {
+    engine::check_one_walk(prerolls, projection, "several isosurfaces");
+    return engine::draw_once(
+        prerolls, projection, isovalues, work, dimension,
+        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+            return engine::isosurfaces<dimension>(hierarchy, isovalues, targets, criterion, bounds,
+                                                  options, work.executor);
+        });
 }
-template std::vector<Isosurface<2>> isosurfaces<2>(Prerolls&, std::span<const double>,
-                                                   const Projection&, const IsosurfaceOptions&,
-                                                   const Work&);
-template std::vector<Isosurface<3>> isosurfaces<3>(Prerolls&, std::span<const double>,
-                                                   const Projection&, const IsosurfaceOptions&,
-                                                   const Work&);
-
-MeasuredError measure_error(Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
-                            std::size_t points, const Work& work) {
-    const std::shared_ptr<const Bounds> bounds = prerolls.finest(work).bounds;
-    return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
-        const Surface<3> whole =
-            isosurface<3>(hierarchy, isovalue, Exact{}, *bounds, {.elements = false}, work.executor)
-                .surface;
-        return measure_error(drawn, whole, hierarchy, isovalue, points, work.executor);
-    });
-}
+template std::vector<Isosurface<2>> detail::draw_isosurfaces(const Prerolls&,
+                                                             std::span<const double>,
+                                                             const SurfaceTargets<2>&,
+                                                             const Projection&,
+                                                             const IsosurfaceOptions&, const Work&);
+template std::vector<Isosurface<3>> detail::draw_isosurfaces(const Prerolls&,
+                                                             std::span<const double>,
+                                                             const SurfaceTargets<3>&,
+                                                             const Projection&,
+                                                             const IsosurfaceOptions&, const Work&);
 
 template <int dimension>
-Projected<Isosurface<dimension>> isoband(Prerolls& prerolls, double low, double high,
+Projected<Isosurface<dimension>> isoband(const Prerolls& prerolls, double low, double high,
                                          const Projection& projection,
                                          const IsosurfaceOptions& options, const Work& work) {
-    engine::check_one_walk(projection, "bands");
-    const auto within = [&](const VirtualRefinement& fine) {
-        return isoband<dimension>(fine, low, high, fine.criterion(), fine.bounds(), options,
-                                  work.executor);
-    };
-    if (auto drawn = engine::within_error<Isosurface<dimension>>(prerolls, projection, work,
-                                                                 dimension, within)) {
-        return *std::move(drawn);
-    }
-    return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
-        const std::array<double, 2> isovalues{low, high};
-        const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
-        return Projected<Isosurface<dimension>>{
-            isoband<dimension>(hierarchy, low, high, criteria.criterion(), criteria.bounds(),
-                               options, work.executor),
+    engine::check_one_walk(prerolls, projection, "bands");
+    return {engine::draw_once(
+                prerolls, projection, std::array{low, high}, work, dimension,
+                [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+                    return engine::isoband<dimension>(hierarchy, low, high, criterion, bounds,
+                                                      options, work.executor);
+                }),
             {.threshold = projection.least_threshold()}};
-    });
 }
-template Projected<Isosurface<2>> isoband<2>(Prerolls&, double, double, const Projection&,
+template Projected<Isosurface<2>> isoband<2>(const Prerolls&, double, double, const Projection&,
                                              const IsosurfaceOptions&, const Work&);
-template Projected<Isosurface<3>> isoband<3>(Prerolls&, double, double, const Projection&,
+template Projected<Isosurface<3>> isoband<3>(const Prerolls&, double, double, const Projection&,
                                              const IsosurfaceOptions&, const Work&);
 
-Projected<Isolines> isolines(Prerolls& prerolls, std::span<const double> values,
+Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> values,
                              const Projection& projection, const IsosurfaceOptions& options,
                              const Work& work) {
-    engine::check_one_walk(projection, "isolines");
-    const auto within = [&](const VirtualRefinement& fine) {
-        return isolines(fine, values, fine.criterion(), fine.bounds(), options, work.executor);
-    };
-    if (auto drawn = engine::within_error<Isolines>(prerolls, projection, work, 2, within)) {
-        return *std::move(drawn);
-    }
-    return engine::with_field(prerolls, work, 2, [&](const auto& hierarchy) {
-        const Criteria criteria(prerolls, engine::told(projection), values, work);
-        return Projected<Isolines>{isolines(hierarchy, values, criteria.criterion(),
-                                            criteria.bounds(), options, work.executor),
-                                   {.threshold = projection.least_threshold()}};
-    });
+    engine::check_one_walk(prerolls, projection, "isolines");
+    return {engine::draw_once(
+                prerolls, projection, values, work, 2,
+                [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+                    return engine::isolines(hierarchy, values, criterion, bounds, options,
+                                            work.executor);
+                }),
+            {.threshold = projection.least_threshold()}};
 }
 
-ProbeResult probe(Prerolls& prerolls, std::span<const Point> points, const Projection& projection,
-                  const Work& work) {
-    projection.check();
-    engine::refuse_collapse(projection, "no surface");
-    engine::refuse_budget(projection, "a probe, which draws none");
-    engine::refuse_distance(projection);
-    engine::refuse_tolerance(projection);
+ProbeResult probe(const Prerolls& prerolls, std::span<const Point> points,
+                  const Projection& projection, const Work& work) {
+    engine::check_first(prerolls, projection, "a probe", [&] {
+        engine::refuse_collapse(projection, "no surface");
+        engine::refuse_budget(projection, "a probe, which draws none");
+        engine::refuse_distance(projection);
+        engine::refuse_tolerance(projection);
+    });
     const auto within = [&](const VirtualRefinement& fine) {
-        return probe(fine, points, fine.criterion(), fine.bounds());
+        return engine::probe(fine, points, fine.criterion(), fine.bounds());
     };
     if (auto found = engine::from_polynomials(prerolls, projection, work, within)) {
         return *std::move(found);
     }
     const FieldOnGrid field = work.on(prerolls.field());
     return field.visit([&](const auto& hierarchy) {
-        if (projection.draws_everything()) return probe(hierarchy, points);
+        if (projection.draws_everything()) return engine::probe(hierarchy, points);
         const Criteria criteria(prerolls, engine::told(projection), {}, work);
-        return probe(hierarchy, points, criteria.criterion(), criteria.bounds());
+        return engine::probe(hierarchy, points, criteria.criterion(), criteria.bounds());
     });
 }
 

@@ -36,12 +36,14 @@ void refuse_slice_distance(const Projection& projection) {
     }
 }
 
-void check_one_walk(const Projection& projection, const char* drawing) {
-    refuse_collapse(projection, drawing);
-    refuse_budget(projection, drawing);
-    refuse_distance(projection);
-    refuse_slice_distance(projection);
-    refuse_tolerance(projection);
+void check_one_walk(const Prerolls& prerolls, const Projection& projection, const char* drawing) {
+    check_first(prerolls, projection, drawing, [&] {
+        refuse_collapse(projection, drawing);
+        refuse_budget(projection, drawing);
+        refuse_distance(projection);
+        refuse_slice_distance(projection);
+        refuse_tolerance(projection);
+    });
 }
 
 Projection told(Projection projection) {
@@ -50,8 +52,8 @@ Projection told(Projection projection) {
     return projection;
 }
 
-std::shared_ptr<const HighOrder> polynomials_for(Prerolls& prerolls, const Projection& projection,
-                                                 const Work& work) {
+std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
+                                                 const Projection& projection, const Work& work) {
     const bool exactly = projection.least_threshold() == 0 && projection.max_triangles == 0;
     if (!projection.asks_for_error() || exactly) return nullptr;
     auto data = prerolls.high_order(work);

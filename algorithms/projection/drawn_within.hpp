@@ -11,6 +11,7 @@
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
+#include <ranks/agreement.hpp>
 
 namespace nestgrid::engine {
 
@@ -21,19 +22,31 @@ void refuse_budget(const Projection& projection, const char* drawing);
 void refuse_distance(const Projection& projection);
 void refuse_tolerance(const Projection& projection);
 void refuse_slice_distance(const Projection& projection);
-/// Refuses what needs a drawing of its own, or several.
-void check_one_walk(const Projection& projection, const char* drawing);
+/// Checks what a drawing is asked for, before anything is drawn or exchanged: on ranks, all end
+/// alike.
+/// \param refuse throws for what this drawing does not do
+template <class Refuse>
+void check_first(const Prerolls& prerolls, const Projection& projection, const char* drawing,
+                 const Refuse& refuse) {
+    together(prerolls.field().facts().shared, drawing, [&] {
+        projection.check();
+        refuse();
+    });
+}
+/// The same for drawings of one walk, which have neither a drawing of their own nor several.
+void check_one_walk(const Prerolls& prerolls, const Projection& projection, const char* drawing);
 
 /// The projection with its threshold, where it draws everything by saying nothing.
 Projection told(Projection projection);
 
 /// The polynomials of a field that the projection asks for within an error; or null.
-std::shared_ptr<const HighOrder> polynomials_for(Prerolls& prerolls, const Projection& projection,
-                                                 const Work& work);
+std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
+                                                 const Projection& projection, const Work& work);
 
 /// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
 template <class Function>
-auto with_field(Prerolls& prerolls, const Work& work, int dimension, const Function& function) {
+auto with_field(const Prerolls& prerolls, const Work& work, int dimension,
+                const Function& function) {
     const FieldOnGrid field = work.on(prerolls.field());
     field.facts().require_dimension(dimension);
     return field.visit(function);
@@ -43,7 +56,7 @@ auto with_field(Prerolls& prerolls, const Work& work, int dimension, const Funct
 /// asks for none, or where all degrees are 1.
 /// \param ask called with the VirtualRefinement
 template <class Ask>
-auto from_polynomials(Prerolls& prerolls, const Projection& projection, const Work& work,
+auto from_polynomials(const Prerolls& prerolls, const Projection& projection, const Work& work,
                       const Ask& ask) {
     std::optional<std::invoke_result_t<const Ask&, const VirtualRefinement&>> result;
     if (const auto data = polynomials_for(prerolls, projection, work)) {
@@ -54,15 +67,35 @@ auto from_polynomials(Prerolls& prerolls, const Projection& projection, const Wo
 
 /// Draws a field of higher degree likewise, if it has the dimension.
 template <class Result, class Draw>
-std::optional<Projected<Result>> within_error(Prerolls& prerolls, const Projection& projection,
-                                              const Work& work, int dimension, const Draw& draw) {
+std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
+                                              const Projection& projection, const Work& work,
+                                              int dimension, const Draw& draw) {
     return from_polynomials(prerolls, projection, work, [&](const VirtualRefinement& fine) {
         prerolls.field().facts().require_dimension(dimension);
         return Projected<Result>{draw(fine), {.threshold = projection.least_threshold()}};
     });
 }
 
-auto criteria_at(const Criteria& criteria) {
+/// Calls draw(hierarchy, criterion, bounds) once, with a field of the dimension under the
+/// projection. \param isovalues of the level sets that are drawn
+template <class Draw>
+auto draw_once(const Prerolls& prerolls, const Projection& projection,
+               std::span<const double> isovalues, const Work& work, int dimension,
+               const Draw& draw) {
+    const auto within = [&](const VirtualRefinement& fine) {
+        prerolls.field().facts().require_dimension(dimension);
+        return draw(fine, fine.criterion(), fine.bounds());
+    };
+    if (auto drawn = from_polynomials(prerolls, projection, work, within)) {
+        return *std::move(drawn);
+    }
+    return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
+        const Criteria criteria(prerolls, told(projection), isovalues, work);
+        return draw(hierarchy, criteria.criterion(), criteria.bounds());
+    });
+}
+
+inline auto criteria_at(const Criteria& criteria) {
     return [&criteria](double threshold) { return criteria.at(threshold); };
 }
 

@@ -79,7 +79,6 @@ void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
     const std::array refused{
         Refused{own == nullptr && !of_leaves, "a surface under other bounds than those of offsets"},
         Refused{criterion.insists(), "a surface under a criterion that is not saturated"},
-        Refused{options.max_triangles != 0, "a number of triangles"},
         Refused{options.normals && options.at_nodes,
                 "a surface with normals and vertices at nodes"},
         Refused{options.normals && own_gradients, "a field with gradients of its own"},

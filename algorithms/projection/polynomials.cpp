@@ -46,6 +46,12 @@ private:
     std::deque<Family> families_;  // of each level on the way down
 };
 
+/// Polynomials, with the field that they borrow.
+struct OfField {
+    FieldOnGrid field;
+    HighOrder data;
+};
+
 }  // namespace
 
 std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field) {
@@ -53,11 +59,7 @@ std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field) {
         if (!hierarchy.offers(Feature::degree) || !DegreeSearch(hierarchy).finds_one()) {
             return nullptr;
         }
-        struct Kept {
-            FieldOnGrid field;
-            HighOrder data;
-        };
-        const auto kept = std::make_shared<const Kept>(Kept{field, HighOrder(hierarchy)});
+        const auto kept = std::make_shared<const OfField>(OfField{field, HighOrder(hierarchy)});
         return {kept, &kept->data};
     });
 }

@@ -14,6 +14,7 @@
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/error.hpp>
 #include <projection/polynomials.hpp>
+#include <ranks/agreement.hpp>
 
 namespace nestgrid {
 
@@ -45,11 +46,13 @@ std::shared_ptr<const Sum> weighted_sum(std::vector<std::shared_ptr<const Indica
 
 /// \throw GridError where the grid has changed since the hierarchy was made for it
 void require_unchanged(const FieldOnGrid& field) {
-    field.visit([](const auto& hierarchy) {
-        const std::unique_ptr<Task> task = hierarchy.open();
-        Coarse coarse;
-        Family family;
-        if (hierarchy.coarse_count() > 0) hierarchy.coarse(task.get(), 0, coarse, family);
+    engine::together(field.facts().shared, "a preroll", [&] {
+        field.visit([](const auto& hierarchy) {
+            const std::unique_ptr<Task> task = hierarchy.open();
+            Coarse coarse;
+            Family family;
+            if (hierarchy.coarse_count() > 0) hierarchy.coarse(task.get(), 0, coarse, family);
+        });
     });
 }
 
@@ -267,13 +270,13 @@ const FieldOnGrid& Prerolls::field() const { return kept_->field(); }
 bool Prerolls::between_frames() const { return kept_->between_frames(); }
 
 ChosenIndicator Prerolls::choose(std::string_view name, double blend,
-                                 std::span<const double> isovalues, const Work& work) {
+                                 std::span<const double> isovalues, const Work& work) const {
     if (name == "error" && isovalues.empty()) name = "deviation";
     return kept_->choose(kept_->kind_of(name, between_frames(), work), blend, isovalues, work);
 }
 
 std::shared_ptr<const Bounds> Prerolls::prepare(const Projection& projection, bool shared,
-                                                const Work& work) {
+                                                const Work& work) const {
     const IndicatorKind& kind =
         kept_->kind_of(projection.indicator, shared || between_frames(), work);
     if (projection.asks_for_everything() && !shared) return finest(work).bounds;
@@ -284,21 +287,22 @@ std::shared_ptr<const Bounds> Prerolls::prepare(const Projection& projection, bo
     return bounds(work);
 }
 
-ChosenIndicator Prerolls::finest(const Work& work) { return kept_->finest(work); }
+ChosenIndicator Prerolls::finest(const Work& work) const { return kept_->finest(work); }
 
-std::shared_ptr<const Bounds> Prerolls::bounds(const Work& work) {
+std::shared_ptr<const Bounds> Prerolls::bounds(const Work& work) const {
     return choose("offset", 1, {}, work).bounds;
 }
 
-std::shared_ptr<const SweptIndicator> Prerolls::sizes(const Spread& spread, const Work& work) {
+std::shared_ptr<const SweptIndicator> Prerolls::sizes(const Spread& spread,
+                                                      const Work& work) const {
     return kept_->sizes(spread, work);
 }
 
-std::shared_ptr<const HighOrder> Prerolls::high_order(const Work& work) {
+std::shared_ptr<const HighOrder> Prerolls::high_order(const Work& work) const {
     return kept_->high_order(work);
 }
 
-std::size_t Prerolls::node_count(const Work& work) { return kept_->node_count(work); }
+std::size_t Prerolls::node_count(const Work& work) const { return kept_->node_count(work); }
 
 void Prerolls::clear() { kept_->clear(); }
 

@@ -1,22 +1,33 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nestgrid/algorithms/slices.hpp>
-
+#include <projection/by_criterion.hpp>
+#include <slices/leaf_bounds.hpp>
 #include <slices/slice_levels.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid::engine {
 
 template <class Real>
-std::vector<Slice> draw_slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
-                               const SurfaceTargets<3>& targets, const Criterion& criterion,
-                               const Bounds& bounds, IsosurfaceOptions options,
-                               const Executor& executor) {
+std::vector<Slice> slices(const Hierarchy<Real>& hierarchy, const SliceRequest& request,
+                          const nestgrid::detail::SurfaceTargets<3>& targets,
+                          const Criterion& criterion, const Bounds& bounds,
+                          IsosurfaceOptions options, const Executor& executor) {
     options.at_nodes = targets.soups.empty();
-    return engine::with_levels(
-        hierarchy, request, options, [&](const engine::Levels<double>& levels) {
-            return engine::draw_levels<3>(levels, targets, criterion, bounds, options, executor);
-        });
+    return with_levels(hierarchy, request, options, [&](const Levels<double>& levels) {
+        return draw_levels<3>(levels, targets, criterion, bounds, options, executor);
+    });
 }
+
+template <class Real>
+Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+            const IsosurfaceOptions& options, const Executor& executor) {
+    hierarchy.facts().require_dimension(3);
+    const LeafBounds leaves(hierarchy);
+    return slice(hierarchy, function, Exact{}, leaves, options, executor);
+}
+
+}  // namespace nestgrid::engine
+
+namespace nestgrid::detail {
 
 template <class Real>
 TriangleBudget find_slice_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
@@ -32,7 +43,7 @@ TriangleBudget find_slice_threshold(const Hierarchy<Real>& hierarchy, const Leve
 
 }  // namespace nestgrid::detail
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
@@ -42,41 +53,42 @@ std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Executor& executor) {
     hierarchy.facts().require_dimension(3);
     const auto count = [&](const auto& levels) {
-        return engine::count_simplices<3>(levels, criterion, bounds, most, options, executor);
+        return count_simplices<3>(levels, criterion, bounds, most, options, executor);
     };
     try {
         if (!request.functions.empty()) {
-            return engine::with_levels(hierarchy, request, options, count);
+            return with_levels(hierarchy, request, options, count);
         }
-        return count(
-            engine::isosurface_levels(hierarchy, std::span<const double>(request.isovalues)));
-    } catch (const engine::Cancelled&) {
+        return count(isosurface_levels(hierarchy, std::span<const double>(request.isovalues)));
+    } catch (const Cancelled&) {
         return std::nullopt;
     }
 }
 
-template std::optional<std::uint64_t> count_triangles(const Hierarchy<float>&, const SliceRequest&,
-                                                      const Criterion&, const Bounds&,
-                                                      std::uint64_t, const IsosurfaceOptions&,
-                                                      const Executor&);
-template std::optional<std::uint64_t> count_triangles(const Hierarchy<double>&, const SliceRequest&,
-                                                      const Criterion&, const Bounds&,
-                                                      std::uint64_t, const IsosurfaceOptions&,
-                                                      const Executor&);
-
-}  // namespace nestgrid
-
-namespace nestgrid::detail {
-
 #define NESTGRID_INSTANTIATE(Real)                                                               \
-    template std::vector<Slice> draw_slices(const Hierarchy<Real>&, const SliceRequest&,         \
-                                            const SurfaceTargets<3>&, const Criterion&,          \
-                                            const Bounds&, IsosurfaceOptions, const Executor&);  \
-    template TriangleBudget find_slice_threshold(                                                \
-        const Hierarchy<Real>&, const LevelFunction&, const MakeCriterion&, const SearchBounds&, \
+    template std::vector<Slice> slices(                                                          \
+        const Hierarchy<Real>&, const SliceRequest&, const nestgrid::detail::SurfaceTargets<3>&, \
+        const Criterion&, const Bounds&, IsosurfaceOptions, const Executor&);                    \
+    template Slice slice(const Hierarchy<Real>&, const LevelFunction&, const IsosurfaceOptions&, \
+                         const Executor&);                                                       \
+    template std::optional<std::uint64_t> count_triangles(                                       \
+        const Hierarchy<Real>&, const SliceRequest&, const Criterion&, const Bounds&,            \
         std::uint64_t, const IsosurfaceOptions&, const Executor&);
 NESTGRID_INSTANTIATE(float)
 NESTGRID_INSTANTIATE(double)
 #undef NESTGRID_INSTANTIATE
+
+}  // namespace nestgrid::engine
+
+namespace nestgrid::detail {
+
+template TriangleBudget find_slice_threshold(const Hierarchy<float>&, const LevelFunction&,
+                                             const MakeCriterion&, const SearchBounds&,
+                                             std::uint64_t, const IsosurfaceOptions&,
+                                             const Executor&);
+template TriangleBudget find_slice_threshold(const Hierarchy<double>&, const LevelFunction&,
+                                             const MakeCriterion&, const SearchBounds&,
+                                             std::uint64_t, const IsosurfaceOptions&,
+                                             const Executor&);
 
 }  // namespace nestgrid::detail

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/detail/union_find.hpp>
 #include <nestgrid/error.hpp>
@@ -109,6 +110,30 @@ std::vector<double> flux(const Surface<3>& surface, const SurfaceMeasurement& me
         }
     }
     return result;
+}
+
+double volume_between(const Prerolls& prerolls, double low, double high,
+                      const Projection& projection, const Work& work) {
+    if (!(low <= high)) throw InvalidInput("the lower isovalue is not below the upper one");
+    const FieldOnGrid& field = prerolls.field();
+    field.facts().require_dimension(3);
+    field.facts().require_one_process("a volume between isovalues");
+    Coarse coarse;
+    Family family;
+    field.visit([&](const auto& hierarchy) {
+        hierarchy.coarse(hierarchy.open().get(), 0, coarse, family);
+    });
+    const Point origin = coarse.corners[0];
+    std::array<double, 2> volume{0, 0};
+    const auto adder = [&origin](double* sum) {
+        return SimplexStream<3>([sum, &origin](const std::array<Point, 3>& x) {
+            *sum += dot(x[0] - origin, cross(x[1] - origin, x[2] - origin)) / 6;
+        });
+    };
+    const std::array<double, 2> isovalues{low, high};
+    extract_isosurfaces<3>(prerolls, isovalues, std::vector{adder(&volume[0]), adder(&volume[1])},
+                           projection, {.cap = true}, work);
+    return volume[0] - volume[1];
 }
 
 }  // namespace nestgrid

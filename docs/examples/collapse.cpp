@@ -30,19 +30,19 @@ int main() {
     constexpr double error = 0.02;
     const HierarchicalIndicator deviations(grid, field, NodeError::deviation);
     auto surface =
-        isosurface(grid, field, isovalue, deviations, {.threshold = collapse_start * error})
-            .surface;
+        isosurface(grid, field, isovalue, under(deviations, collapse_start * error)).surface;
     const std::size_t drawn = surface.simplices.size();
     const Collapsed collapsed =
-        collapse(surface, grid, field, isovalue, deviations, {.error = error});
+        collapse(surface, erase(grid, field), isovalue, deviations, {.error = error});
     // [collapse]
     std::printf("%zu triangles, then %zu, |U - C| <= %.3f\n", drawn, surface.simplices.size(),
                 collapsed.error);
     // [colours]
     const Plane plane({16, 16, 16}, {1, 2, 3});
-    Surface<3> coloured = slice(grid, field, plane, deviations, {.threshold = error / 2}).surface;
+    Surface<3> coloured = slice(grid, field, plane, under(deviations, error / 2)).surface;
     const std::size_t in_slice = coloured.simplices.size();
-    const Collapsed kept = collapse_colours(coloured, grid, field, deviations, {.errors = {error}});
+    const Collapsed kept =
+        collapse_colours(coloured, erase(grid, field), deviations, {.errors = {error}});
     // [colours]
     std::printf("a slice of %zu triangles, then %zu, colours within %.3f\n", in_slice,
                 coloured.simplices.size(), kept.error);
@@ -50,45 +50,46 @@ int main() {
     const Sphere sphere({16, 16, 16}, 9);
     const Surface<3> all = slice(grid, field, sphere).surface;
     Surface<3> curved = all;
-    const Collapsed moved = collapse_colours(curved, grid, field, deviations,
+    const Collapsed moved = collapse_colours(curved, erase(grid, field), deviations,
                                              {.errors = {error}, .nearness = Nearness{all, 0.5}});
     // [curved]
     std::printf("a sphere of %zu triangles, then %zu, colours within %.3f\n", all.simplices.size(),
                 curved.simplices.size(), moved.error);
     // [measure]
     const auto whole = isosurface(grid, field, isovalue).surface;
-    const MeasuredError measured = measure_error(surface, whole, grid, field, isovalue);
+    const MeasuredError measured = measure_error({grid, field}, surface, whole, isovalue);
     // [measure]
     std::printf("measured: |U - C| <= %.3f, distances %.4f there, %.4f back\n",
                 measured.value.greatest, measured.distance.greatest, measured.back.greatest);
     // [within]
     constexpr double distance = 0.5;
-    const Surface<3> finest = isosurface(grid, field, isovalue, Exact{}, deviations).surface;
+    const Surface<3> finest = isosurface(grid, field, isovalue, under(Exact{}, deviations)).surface;
     const auto slopes =
-        slope_deviations(grid, field, std::span<const double>(&isovalue, 1), deviations);
+        slope_deviations({grid, field}, std::span<const double>(&isovalue, 1), deviations);
     const IsosurfaceWithin within =
-        isosurface_within(grid, field, isovalue, {finest, distance}, Threshold(&slopes, distance),
-                          deviations, {.cuts = Cuts::finest});
+        isosurface_within(erase(grid, field), isovalue, {finest, distance},
+                          Threshold(&slopes, distance), deviations, {.cuts = Cuts::finest});
     // [within]
     const MeasuredError off =
-        measure_error(within.isosurface.surface, finest, grid, field, isovalue);
+        measure_error({grid, field}, within.isosurface.surface, finest, isovalue);
     std::printf("%zu of %zu triangles, distances %.4f there, %.4f back\n",
                 within.isosurface.surface.simplices.size(), finest.simplices.size(),
                 off.distance.greatest, off.back.greatest);
     // [nearness]
     const Nearness near{finest, distance};
     Surface<3> fewer =
-        isosurface_within(grid, field, isovalue, {finest, distance / 2},
+        isosurface_within(erase(grid, field), isovalue, {finest, distance / 2},
                           Threshold(&slopes, distance / 2), deviations, {.cuts = Cuts::finest})
             .isosurface.surface;
-    collapse(fewer, grid, field, isovalue, deviations, {.nearness = near});
+    collapse(fewer, erase(grid, field), isovalue, deviations, {.nearness = near});
     // [nearness]
-    const MeasuredError left = measure_error(fewer, finest, grid, field, isovalue);
+    const MeasuredError left = measure_error({grid, field}, fewer, finest, isovalue);
     std::printf("%zu of them left, distances %.4f there, %.4f back\n", fewer.simplices.size(),
                 left.distance.greatest, left.back.greatest);
     // [budget]
     const auto at = [&](double threshold) { return Threshold(&deviations, threshold); };
-    const TriangleBudget found = find_collapse_error(grid, field, isovalue, at, deviations, 2000);
+    const TriangleBudget found =
+        find_collapse_error(erase(grid, field), isovalue, at, deviations, 2000);
     // [budget]
     std::printf("%zu triangles at an error of %.4f\n", static_cast<std::size_t>(found.triangles),
                 found.threshold);

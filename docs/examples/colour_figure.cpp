@@ -60,7 +60,7 @@ void refine_colours_figure(const std::string& file) {
     picture.look(0, view);
     draw_colours(picture, surface, 6);
     std::printf("%zu triangles", surface.simplices.size());
-    refine_colours(surface, grid, field, 0.02);
+    refine_colours(surface, {grid, field}, 0.02);
     std::printf(", %zu with refined colours\n", surface.simplices.size());
     picture.look(1, view);
     draw_colours(picture, surface, 3);

@@ -66,9 +66,10 @@ int run(int argc, char** argv) {
         // Where the space itself jumps, this is a part of what is left of the tolerance.
         const double left = tolerance - std::min(data.jump(), tolerance / 2);
         const nestgrid::VirtualRefinement fine(data, {.tolerance = left});
-        const auto surface = nestgrid::isosurface<3>(fine, 0.5, fine.criterion(), fine.bounds());
+        const auto surface =
+            nestgrid::isosurface<3>(fine, 0.5, under(fine.criterion(), fine.bounds()));
         auto slice = nestgrid::slice(fine, nestgrid::Plane({0, 0, 0.3}, {0, 0, 1}),
-                                     fine.criterion(), fine.bounds());
+                                     under(fine.criterion(), fine.bounds()));
         // [dealii_high_order]
 
         const auto closed = nestgrid::surface_report(surface.surface);

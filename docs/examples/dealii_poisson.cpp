@@ -49,7 +49,7 @@ int run(int argc, char** argv, const ShowSurface& show) {
         const nestgrid::DealiiGrid<3> grid(problem.triangulation);
         const nestgrid::DealiiField field(grid, problem.dofs, problem.solution);
         const nestgrid::HierarchicalIndicator indicator(grid, field);
-        const auto result = nestgrid::isosurface(grid, field, 0.5, indicator, {.threshold = 1e-4});
+        const auto result = nestgrid::isosurface(grid, field, 0.5, under(indicator, 1e-4));
 
         const auto report = nestgrid::surface_report(result.surface);
         std::printf("%5d %7u %7u %3u %10.3e %10zu %11zu %10.1e\n", cycle,

@@ -18,12 +18,12 @@ int main() {
     const std::vector<float> samples = bucky_ball(n);
     const LatticeField field(grid, std::span<const float>(samples));
     const HierarchicalIndicator offsets(grid, field);
-    const auto usual = isosurface(grid, field, 0.275, offsets, {.threshold = 0.02});
+    const auto usual = isosurface(grid, field, 0.275, under(offsets, 0.02));
     std::printf("offsets:    %zu triangles, |U - C| <= %.3f\n", usual.surface.simplices.size(),
                 usual.error_bound);
     // [deviation]
     const HierarchicalIndicator deviations(grid, field, NodeError::deviation);
-    const auto result = isosurface(grid, field, 0.275, deviations, {.threshold = 0.02});
+    const auto result = isosurface(grid, field, 0.275, under(deviations, 0.02));
     // [deviation]
     std::printf("deviations: %zu triangles, |U - C| <= %.3f\n", result.surface.simplices.size(),
                 result.error_bound);

@@ -45,7 +45,7 @@ void discontinuous_figure(const std::string& file) {
     const DiscontinuousData data(grid, value);
     const ElementDeviations deviations(data);
     const auto all = shading(data);
-    const auto some = shading(data, deviations, {.threshold = 0.03});
+    const auto some = shading(data, {.threshold = 0.03, .deviations = &deviations});
     // [discontinuous]
     paint(picture, 0, all.surface);
     paint(picture, 1, some.surface);

@@ -26,11 +26,11 @@ class WithinError {
 public:
     Surface<3> draw(double error) const {
         const Threshold s(&cuts_, error);
-        return isosurface(bucky.grid, bucky.field, isovalue, s, deviations_).surface;
+        return isosurface(bucky.grid, bucky.field, isovalue, under(s, deviations_)).surface;
     }
     Surface<3> collapsed(double error) const {
         Surface<3> surface = draw(collapse_start * error);
-        collapse(surface, bucky.grid, bucky.field, isovalue, deviations_, {.error = error});
+        collapse(surface, erase(bucky.grid, bucky.field), isovalue, deviations_, {.error = error});
         return surface;
     }
 
@@ -39,7 +39,7 @@ public:
 private:
     HierarchicalIndicator deviations_{bucky.grid, bucky.field, NodeError::deviation};
     SweptIndicator cuts_ =
-        cut_deviations(bucky.grid, bucky.field, std::span(&isovalue, 1), deviations_);
+        cut_deviations({bucky.grid, bucky.field}, std::span(&isovalue, 1), deviations_);
 };
 
 double swell(const Point& x) {
@@ -69,12 +69,12 @@ void error_kept_figure(const std::string& file) {
     const NodeField<BisectionGrid<2>, double> field(grid, u);
     const HierarchicalIndicator deviations(grid, field, NodeError::deviation);
     const std::array level{0.3};
-    const SweptIndicator cuts = cut_deviations(grid, field, level, deviations);
+    const SweptIndicator cuts = cut_deviations({grid, field}, level, deviations);
     constexpr double error = 0.15;
     const Exact all;
-    const auto data = shading(grid, field, all, deviations).surface;
-    const auto line = isosurface(grid, field, level[0], Threshold(&cuts, error), deviations);
-    const auto whole = isosurface(grid, field, level[0], all, deviations);
+    const auto data = shading(grid, field, under(all, deviations)).surface;
+    const auto line = isosurface(grid, field, level[0], under(Threshold(&cuts, error), deviations));
+    const auto whole = isosurface(grid, field, level[0], under(all, deviations));
     Picture picture(480, 480, 1);
     picture.look(0, plane);
     draw(picture, data, false, [&](std::size_t t) {
@@ -83,7 +83,7 @@ void error_kept_figure(const std::string& file) {
         return std::abs(sum / 3 - level[0]) <= error ? sand : white;
     });
     for (const double end : {level[0] - error, level[0] + error}) {
-        draw(picture, isosurface(grid, field, end, all, deviations).surface, grey, 1.5);
+        draw(picture, isosurface(grid, field, end, under(all, deviations)).surface, grey, 1.5);
     }
     draw(picture, whole.surface, blue, 2);
     draw(picture, line.surface, red, 3);
@@ -98,7 +98,7 @@ void error_told_figure(const std::string& file) {
     const Bucky& bucky = within.bucky;
     const Surface<3> surface = within.collapsed(error);
     const Surface<3> whole = isosurface(bucky.grid, bucky.field, isovalue).surface;
-    const MeasuredError told = measure_error(surface, whole, bucky.grid, bucky.field, isovalue);
+    const MeasuredError told = measure_error({bucky.grid, bucky.field}, surface, whole, isovalue);
     std::vector<Point> centres;
     for (const auto& [a, b, c] : surface.simplices) {
         const auto& x = surface.vertices;

@@ -103,11 +103,10 @@ void isoband_figure(const std::string& file) {
     const auto& field = bucky.field;
     // [isoband]
     const HierarchicalIndicator indicator(grid, field);
-    const auto band =
-        isoband(grid, field, 0.15, 0.6, Threshold(&indicator, 0.02), indicator).surface;
+    const auto band = isoband(grid, field, 0.15, 0.6, under(indicator, 0.02)).surface;
     const SurfaceReport report = surface_report(band);
     std::printf("volume %g, by volume_between() %g\n", report.volume,
-                volume_between(grid, field, 0.15, 0.6, indicator, 0.02));
+                volume_between({grid, field}, 0.15, 0.6, under(indicator, 0.02)));
     // [isoband]
     Picture picture(480, 480, 1);
     picture.look(0, ball);
@@ -146,9 +145,9 @@ void budget_figure(const std::string& file) {
     Picture picture(280, 280, 3);
     int view = 0;
     // [budget]
-    const HierarchicalIndicator indicator(grid, field);
+    const Prerolls prerolls(grid, field);
     for (const std::uint64_t most : {80'000U, 30'000U, 10'000U}) {
-        const auto result = isosurface(grid, field, 0.275, indicator, {.max_triangles = most});
+        const auto result = isosurface<3>(prerolls, 0.275, {.max_triangles = most});
         std::printf("%zu triangles of %zu, |U - C| <= %g\n", result.surface.simplices.size(),
                     static_cast<std::size_t>(most), result.error_bound);
         draw_ball(picture, view++, result.surface);
@@ -166,15 +165,16 @@ void region_figure(const std::string& file) {
     const Point centre{48, 50, 40};
     const Region region(grid, [&](const Point& x) { return norm(x - centre) < 12; });
     const auto criterion = fine_inside(region, indicator, 0.1, 0.0);
-    const auto result = isosurface(grid, field, 0.275, criterion, indicator);
+    const auto result = isosurface(grid, field, 0.275, under(criterion, indicator));
     // [region]
     // [budget_outside]
     const auto criterion_at = [&](double outside) {
         return fine_inside(region, indicator, outside, 0.0);
     };
     const TriangleBudget found =
-        find_threshold(grid, field, 0.275, criterion_at, indicator, 45'000);
-    const auto within = isosurface(grid, field, 0.275, criterion_at(found.threshold), indicator);
+        find_threshold<3>(erase(grid, field), 0.275, criterion_at, indicator, 45'000);
+    const auto within =
+        isosurface(grid, field, 0.275, under(criterion_at(found.threshold), indicator));
     // [budget_outside]
     Picture picture(380, 380, 2);
     int view = 0;
@@ -226,11 +226,11 @@ void criteria_figure(const std::string& file) {
     // [insist]
     const HierarchicalIndicator indicator(grid, field);
     const TwoSides two_sides(indicator);
-    const auto open = isosurface(grid, field, 0.275, Unsaturated(two_sides), indicator);
+    const auto open = isosurface(grid, field, 0.275, under(Unsaturated(two_sides), indicator));
 
     const Region side(grid, [](const Point& x) { return x[0] > 32; });
     const auto saturated = fine_inside(side, indicator, 0.1, 0.002);
-    const auto closed = isosurface(grid, field, 0.275, saturated, indicator);
+    const auto closed = isosurface(grid, field, 0.275, under(saturated, indicator));
     // [insist]
     Picture picture(380, 380, 2);
     int view = 0;
@@ -254,7 +254,8 @@ void levels_figure(const std::string& file) {
     // [levels]
     const NodeLevels levels(grid);
     for (const int deepest : {18, 15, 12}) {
-        const auto result = isosurface(grid, field, 0.275, levels.deeper_than(deepest), indicator);
+        const auto result =
+            isosurface(grid, field, 0.275, under(levels.deeper_than(deepest), indicator));
         draw_ball(picture, view++, result.surface);
     }
     // [levels]
@@ -372,10 +373,10 @@ void norm_figure(const std::string& file) {
     // [norm]
     const DerivedField<Flow, Magnitude, 3> speed(flow);  // the speed, and the velocity behind it
     const HierarchicalIndicator bounds(grid, speed);
-    const SweptIndicator all = norm_indicator(grid, speed);
+    const SweptIndicator all = norm_indicator({grid, speed});
     for (const double epsilon : {0.05, 0.2, 0.8}) {
         const Threshold within(&all, epsilon);
-        const auto surface = isosurface(grid, speed, 1.9, within, bounds).surface;
+        const auto surface = isosurface(grid, speed, 1.9, under(within, bounds)).surface;
         picture.look(view++, {.towards_eye = {-1, -2, 1.4}, .up = {0, 0, 1}, .height = 3.3});
         draw(picture, surface, true, [&](std::size_t triangle) {
             const std::size_t vertex = surface.simplices[triangle][0];

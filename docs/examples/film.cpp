@@ -119,7 +119,7 @@ std::size_t draw(const Frame& a, const Frame& b, const std::vector<double>& time
         const KeyFrames indicator({&of_first, &of_second}, weights);
         const Between field({&first, &second}, weights);
         const Threshold s(&indicator, 0.005);
-        const auto drawn = isosurface(both, field, 0.0, s, indicator);
+        const auto drawn = isosurface(both, field, 0.0, under(s, indicator));
         const SurfaceReport report = surface_report(drawn.surface);
         std::printf("time %.3f: %5zu triangles, volume %.5f, %zu open edges\n", t, report.triangles,
                     report.volume, report.open_edges);

@@ -38,12 +38,11 @@ int main() {
     const LatticeBisection<3> grid({.samples = {n, n, n}});
     const std::vector<float> samples = bucky_ball(n);
     const LatticeField field(grid, std::span<const float>(samples));
-    const HierarchicalIndicator indicator(grid, field);
-    const auto linear = isosurface(grid, field, isovalue, indicator, {.max_triangles = 20'000});
+    const Prerolls prerolls(grid, field);
+    const auto linear = isosurface<3>(prerolls, isovalue, {.max_triangles = 20'000});
     // [finest]
-    const auto result =
-        isosurface(grid, field, isovalue, indicator,
-                   {.max_triangles = 20'000, .cuts = Cuts::finest, .normals = true});
+    const auto result = isosurface<3>(prerolls, isovalue, {.max_triangles = 20'000},
+                                      {.cuts = Cuts::finest, .normals = true});
     // [finest]
     const double before = root_mean_square(grid, field, linear.surface, isovalue);
     const double after = root_mean_square(grid, field, result.surface, isovalue);

@@ -126,7 +126,7 @@ int main() {
     const HierarchicalIndicator indicator(grid, field);
     std::size_t open = 0;
     for (const double threshold : {0.0, 0.05, 0.2, 1.0}) {
-        const auto result = isosurface(grid, field, 0.5, indicator, {.threshold = threshold});
+        const auto result = isosurface(grid, field, 0.5, under(indicator, threshold));
         open += surface_report(result.surface).open_edges;
         std::printf("threshold %4.2f: %4zu triangles, at most %.3f off\n", threshold,
                     result.surface.simplices.size(), result.error_bound);

@@ -35,7 +35,7 @@ void isosurface_growth_figure(const std::string& file) {
         for (Curve& curve : curves) {
             const Threshold criterion(&indicator, std::stod(curve.name));
             const auto drawn =
-                isosurface(grid, field, 0.275, criterion, indicator, {.elements = false});
+                isosurface(grid, field, 0.275, under(criterion, indicator), {.elements = false});
             curve.points.push_back({count, static_cast<double>(drawn.counts.visited)});
             std::printf(" %7.0f", curve.points.back()[1]);
         }
@@ -58,7 +58,7 @@ void slice_growth_figure(const std::string& file) {
         const double count = 6 * std::pow(n - 1, 3);
         const auto visited = [&](const Point& normal) {
             const Plane cut({m, m, m + 0.3}, normal);
-            const Slice drawn = slice(grid, ZeroField<Tetrahedra>{}, cut, {.elements = false});
+            const Slice drawn = slice(grid, ZeroField<Tetrahedra>{}, cut, {}, {.elements = false});
             return static_cast<double>(drawn.counts.visited);
         };
         oblique.points.push_back({count, visited({0.3, 0.5, 0.81})});

@@ -49,7 +49,7 @@ int main() {
     const NodeField<OctreeGrid<2>, double> field(grid, heights);  // a number for each node
     const HierarchicalIndicator indicator(grid, field);
     for (const double threshold : {0.0, 0.001, 0.01, 0.05}) {
-        const Shading graph = height_field(grid, field, 2.0, indicator, {.threshold = threshold});
+        const Shading graph = height_field(grid, field, 2.0, under(indicator, threshold));
         const SurfaceReport report = surface_report(graph.surface);
         std::printf("threshold %5.3f: %5zu triangles, %zu open edges, at most %.4f off\n",
                     threshold, report.triangles, report.open_edges, graph.error_bound);

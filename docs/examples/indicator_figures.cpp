@@ -8,9 +8,9 @@
 
 #include <nestgrid/adapters/bisection_grid.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
-#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
@@ -27,7 +27,7 @@ void draw_thresholds(const std::string& file, const Bucky& bucky, const Indicato
     int view = 0;
     for (const double threshold : thresholds) {
         const Threshold s(&indicator, threshold);
-        const auto result = isosurface(bucky.grid, bucky.field, 0.275, s, bounds);
+        const auto result = isosurface(bucky.grid, bucky.field, 0.275, under(s, bounds));
         draw_ball(picture, view++, result.surface);
         std::printf("threshold %g: %zu triangles, |U - C| <= %g\n", threshold,
                     result.surface.simplices.size(), result.error_bound);
@@ -70,9 +70,9 @@ void visual_figure(const std::string& file) {
     // [visual]
     const HierarchicalIndicator bounds(grid, field);
     const double range = bounds.greatest() - bounds.least();
-    const SweptIndicator visual = visual_indicator(grid, field, {.tau = 0x1p-20 * range});
+    const SweptIndicator visual = visual_indicator({grid, field}, {.tau = 0x1p-20 * range});
     const Threshold folds(&visual, 0.5);  // of at most 29 degrees: 2 sin(29 / 2)
-    const auto result = isosurface(grid, field, 0.275, folds, bounds);
+    const auto result = isosurface(grid, field, 0.275, under(folds, bounds));
     // [visual]
     std::printf("%zu triangles\n", result.surface.simplices.size());
     draw_thresholds(file, bucky, visual, bounds, {0.25, 0.5, 1});
@@ -84,9 +84,9 @@ void numerical_figure(const std::string& file) {
     const auto& field = bucky.field;
     // [numerical]
     const HierarchicalIndicator bounds(grid, field);
-    const SweptIndicator numerical = numerical_indicator(grid, field);
+    const SweptIndicator numerical = numerical_indicator({grid, field});
     const Threshold jumps(&numerical, 0.2);
-    const auto result = isosurface(grid, field, 0.275, jumps, bounds);
+    const auto result = isosurface(grid, field, 0.275, under(jumps, bounds));
     // [numerical]
     std::printf("%zu triangles\n", result.surface.simplices.size());
     draw_thresholds(file, bucky, numerical, bounds, {0.1, 0.2, 0.8});
@@ -98,9 +98,9 @@ void wavelet_figure(const std::string& file) {
     const auto& field = bucky.field;
     // [wavelet]
     const HierarchicalIndicator bounds(grid, field);
-    const SweptIndicator wavelet = wavelet_indicator(grid, field);
+    const SweptIndicator wavelet = wavelet_indicator({grid, field});
     const Threshold detail(&wavelet, 0.05);
-    const auto result = isosurface(grid, field, 0.275, detail, bounds);
+    const auto result = isosurface(grid, field, 0.275, under(detail, bounds));
     // [wavelet]
     std::printf("%zu triangles\n", result.surface.simplices.size());
     draw_thresholds(file, bucky, wavelet, bounds, {0.01, 0.05, 0.15});
@@ -130,10 +130,10 @@ void geometry_figure(const std::string& file) {
     int view = 0;
     // [geometry]
     const HierarchicalIndicator data(grid, field);  // sees nothing: the data are constant
-    const SweptIndicator bounds = position_bounds(grid, field);
+    const SweptIndicator bounds = position_bounds({grid, field});
     for (const double epsilon : {0.002, 0.01, 0.05}) {
         const Threshold within(&bounds, epsilon);  // no point is farther off than epsilon
-        const Surface<3> surface = shading(grid, field, within, data).surface;
+        const Surface<3> surface = shading(grid, field, under(within, data)).surface;
         picture.look(view++, {.towards_eye = {-1, -2, 1.6}, .up = {0, 0, 1}, .height = 2.3});
         draw(picture, surface, true, [](std::size_t) { return sand; });
         std::printf("within %g: %zu triangles\n", epsilon, surface.simplices.size());

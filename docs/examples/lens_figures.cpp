@@ -32,7 +32,7 @@ void lens_figure(const std::string& file) {
     const SweptIndicator size = mesh_size(grid, {.slope = 0.5});  // once for all lenses
     for (const Point& centre : {Point{16, 24, 32}, Point{28, 36, 32}, Point{44, 44, 32}}) {
         const Lens lens(&size, Ball{centre, 9}, {.finest = 2});
-        const Slice result = slice(grid, field, middle, lens, indicator);
+        const Slice result = slice(grid, field, middle, under(lens, indicator));
         // [lens]
         picture.look(view++, {.centre = {32, 32, 32}, .height = 66});
         const Surface<3>& s = result.surface;
@@ -74,8 +74,8 @@ Moduli greatest_moduli(const OctreeGrid<3>& grid, double factor) {
     const HierarchicalIndicator without_slope(grid, field, Spread{.factor = factor});
     const std::vector<Point> nodes = grid.node_positions();
     const auto move = [&](const Criterion& a, const Criterion& b) {
-        const auto before = probe(grid, field, nodes, a, indicator).values;
-        const auto after = probe(grid, field, nodes, b, indicator).values;
+        const auto before = probe(grid, field, nodes, under(a, indicator)).values;
+        const auto after = probe(grid, field, nodes, under(b, indicator)).values;
         double greatest = 0;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             greatest = std::max(greatest, std::abs(after[i] - before[i]));
@@ -110,7 +110,7 @@ double greatest_step(const Grid& grid, double factor, double relative) {
     // [blended]
     const HierarchicalIndicator indicator(grid, field, Spread{.factor = factor});
     const auto at = [&](double epsilon) {
-        return isosurface(grid, field, 0.1, Blended(&indicator, epsilon, factor), indicator)
+        return isosurface(grid, field, 0.1, under(Blended(&indicator, epsilon, factor), indicator))
             .surface;
     };
     // [blended]

@@ -69,7 +69,7 @@ int main() {
     std::printf("degree %d, jumps of %.4f\n", data.greatest_degree(), data.jump());
     for (const double tolerance : {0.1, 0.01, 0.001}) {
         const VirtualRefinement fine(data, {.tolerance = tolerance});
-        const auto result = isosurface<3>(fine, 0.5, fine.criterion(), fine.bounds());
+        const auto result = isosurface<3>(fine, 0.5, under(fine.criterion(), fine.bounds()));
         std::printf("tolerance %5.3f: %5zu triangles, %zu open edges, at most %.4f off\n",
                     tolerance, result.surface.simplices.size(),
                     surface_report(result.surface).open_edges, result.error_bound);

@@ -27,9 +27,9 @@ int main() {
             eta[i] = std::abs(split.offset(i)) / std::max(std::abs(split.means[i]), 0.1);
         }
     };
-    const SweptIndicator own = measured_indicator(grid, field, relative);
+    const SweptIndicator own = measured_indicator({grid, field}, relative);
     const HierarchicalIndicator bounds(grid, field);
-    const auto result = isosurface(grid, field, 0.275, Threshold(&own, 0.2), bounds);
+    const auto result = isosurface(grid, field, 0.275, under(Threshold(&own, 0.2), bounds));
     // [own]
     const SurfaceReport report = surface_report(result.surface);
     std::printf("%zu triangles, %zu open edges, |U - C| <= %g\n", report.triangles,

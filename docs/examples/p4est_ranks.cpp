@@ -108,7 +108,7 @@ void draw(p8est_t* forest, const char* path) {
     const Distributed grid(mine, ranks);              // anew when the forest has changed
     const DistributedField field(grid, Wave{&mine});  // anew when the values have changed
     const HierarchicalIndicator indicator(grid, field);
-    const auto piece = isosurface(grid, field, 0.0, indicator, {.threshold = 0.02, .cap = true});
+    const auto piece = isosurface(grid, field, 0.0, under(indicator, 0.02), {.cap = true});
     // [ranks]
     if (ranks.rank() == 0) std::printf("|U| <= %.3f on it\n", piece.error_bound);
     write_stl(piece.surface, ranks, path);

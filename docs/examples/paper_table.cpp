@@ -40,7 +40,7 @@ int main() {
     bool closed = true;
     for (const Row& row : paper) {
         const auto result =
-            nestgrid::isosurface(grid, field, isovalue, indicator, {.threshold = row.threshold});
+            nestgrid::isosurface(grid, field, isovalue, under(indicator, row.threshold));
         const nestgrid::SurfaceReport report = nestgrid::surface_report(result.surface);
         closed = closed && report.closed() && report.manifold();
         std::printf("| %g | %ld | %zu | %ld | %llu | %llu | %llu | %zu | %.4g |\n", row.threshold,

@@ -53,8 +53,7 @@ int main() {
     // [threshold]
     const HierarchicalIndicator indicator(grid, field);
     const std::vector<Point> points{{0.4, 0.4, 0.4}, {0.1, 0.2, 0.3}};
-    const ProbeResult coarse =
-        probe(grid, field, points, Threshold(&indicator, 0.05), indicator);  // P_S U
+    const ProbeResult coarse = probe(grid, field, points, under(indicator, 0.05));  // P_S U
     // [threshold]
     for (std::size_t i = 0; i < points.size(); ++i) {
         std::printf("%.3f at threshold 0.05, level %d\n", coarse.values[i], coarse.level[i]);

@@ -66,7 +66,7 @@ int main() {
     const HierarchicalIndicator indicator(grid, field);
     const Plane plane({0.5, 0.5, 0.5}, {0, 1, 1});  // a point, and a normal of any length
     for (const double threshold : {0.0, 0.005, 0.05}) {
-        const Slice s = slice(grid, field, plane, indicator, {.threshold = threshold});
+        const Slice s = slice(grid, field, plane, under(indicator, threshold));
         const auto [low, high] = std::ranges::minmax(s.surface.attributes);  // the temperatures
         std::printf("threshold %.3f: %5zu triangles, %.3f to %.3f, at most %.3f off\n", threshold,
                     s.surface.simplices.size(), low, high, s.error_bound);
@@ -78,18 +78,18 @@ int main() {
     const Torus torus;
     const SliceRequest request{.functions = {&plane, &ball, &torus}, .isovalues = {0.0}};
     const Threshold coarse(&indicator, 0.05);
-    const std::vector<Slice> all = slices(grid, field, request, coarse, indicator);
+    const std::vector<Slice> all = slices({grid, field}, request, under(coarse, indicator));
     // [together]
     // [fine]
     const NodeLevels levels(grid);
-    const Slice fine = slice(grid, field, torus, coarse && levels.deeper_than(4), indicator);
+    const Slice fine = slice(grid, field, torus, under(coarse && levels.deeper_than(4), indicator));
     std::printf("torus: %zu triangles, with elements of level 4 and more %zu\n",
                 all[2].surface.simplices.size(), fine.surface.simplices.size());
     // [fine]
     // [boundary]
-    const Slice skin = boundary_surface(grid, field, coarse, indicator);
+    const Slice skin = boundary_surface(grid, field, under(coarse, indicator));
     // The part of the domain on the positive side, with its boundary: cut open along the plane.
-    const Slice half = slice(grid, field, plane, coarse, indicator, {.cap = true});
+    const Slice half = slice(grid, field, plane, under(coarse, indicator), {.cap = true});
     std::printf("boundary: %zu triangles, around volume %.3f; cut open: %zu, around %.3f\n",
                 skin.surface.simplices.size(), surface_report(skin.surface).volume,
                 half.surface.simplices.size(), surface_report(half.surface).volume);

@@ -7,9 +7,9 @@
 
 #include <nestgrid/adapters/union.hpp>
 #include <nestgrid/algorithms/between.hpp>
-#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 
 #include "scenes.hpp"
 
@@ -47,7 +47,7 @@ void time_figure(const std::string& file) {
         const KeyFrames indicator({&of_a, &of_b}, weights);
         const Between field({&a, &b}, weights);
         const Threshold s(&indicator, 0.01);
-        const Surface<3> grid = shading(both, field, s, indicator).surface;
+        const Surface<3> grid = shading(both, field, under(s, indicator)).surface;
         picture.look(view, plane);
         draw(picture, grid, true, [&](std::size_t t) {
             double sum = 0;
@@ -55,7 +55,7 @@ void time_figure(const std::string& file) {
             return ramp(sum / 3);
         });
         for (const double value : {0.25, 0.5, 0.75}) {
-            draw(picture, isosurface(both, field, value, s, indicator).surface, red, 2);
+            draw(picture, isosurface(both, field, value, under(s, indicator)).surface, red, 2);
         }
         std::printf("t %.2f: %zu triangles\n", view / 4.0, grid.simplices.size());
     }

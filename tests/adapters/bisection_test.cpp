@@ -163,7 +163,7 @@ double circle_length(int n) {
         for (int x = 0; x < n; ++x) values.push_back(-std::hypot(x * h - 0.5, y * h - 0.5));
     }
     const LatticeField field(grid, std::span<const double>(values));
-    const auto line = isosurface(grid, field, -0.4, {.verify = true});
+    const auto line = isosurface(grid, field, -0.4, {}, {.verify = true});
     std::vector<int> starts(line.surface.vertices.size());
     std::vector<int> ends(line.surface.vertices.size());
     double length = 0;
@@ -198,7 +198,7 @@ TEST(Image, CappedIsolinesCloseAroundTheRegion) {
         for (float& v : values) v = static_cast<float>(random() % 5);
         const LatticeField field(grid, std::span<const float>(values));
         for (const double threshold : {0.0, 1.0, 3.0}) {
-            const auto line = isosurface(grid, field, 2, {.threshold = threshold, .cap = true});
+            const auto line = isosurface(grid, field, 2, {.threshold = threshold}, {.cap = true});
             std::vector<int> balance(line.surface.vertices.size());
             for (const auto& s : line.surface.simplices) {
                 ++balance[s[0]];

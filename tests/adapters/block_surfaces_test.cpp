@@ -24,9 +24,8 @@ int expect_closed_surfaces(const Blocks<dim>& blocks, unsigned seed) {
     const HierarchicalIndicator indicator(grid, field);
     int drawn = 0;
     for (const double threshold : {0.0, 0.01, 0.1, 0.5}) {
-        const auto result =
-            isosurface(grid, field, 0.0, indicator,
-                       {.threshold = threshold, .cap = seed % 2 == 0, .verify = true});
+        const auto result = isosurface(grid, field, 0.0, under(indicator, threshold),
+                                       {.cap = seed % 2 == 0, .verify = true});
         expect_closed(result.surface, seed % 2 == 0);
         ++drawn;
     }
@@ -111,8 +110,7 @@ void expect_leaf_blocks_closed() {
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : {0.0, 0.02, 0.2}) {
             const auto surface =
-                isosurface(grid, field, 0.0, indicator, {.threshold = threshold, .verify = true})
-                    .surface;
+                isosurface(grid, field, 0.0, under(indicator, threshold), {.verify = true}).surface;
             expect_closed(surface);
             EXPECT_GT(surface.simplices.size(), 0U);
         }

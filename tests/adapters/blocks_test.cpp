@@ -90,10 +90,9 @@ void expect_derived_hanging_nodes() {
         const HierarchicalIndicator derived(plain, field);
         for (const double threshold : six_thresholds) {
             const auto a =
-                isosurface(grid, field, 0.0, own, {.threshold = threshold, .verify = true}).surface;
+                isosurface(grid, field, 0.0, under(own, threshold), {.verify = true}).surface;
             const auto b =
-                isosurface(plain, field, 0.0, derived, {.threshold = threshold, .verify = true})
-                    .surface;
+                isosurface(plain, field, 0.0, under(derived, threshold), {.verify = true}).surface;
             ASSERT_EQ(a.vertices, b.vertices);
             ASSERT_EQ(a.simplices, b.simplices);
         }
@@ -191,7 +190,7 @@ TEST(Blocks, RefuseWhatWasMadeForOtherBoxes) {
     const BlockGrid<3> other(after);
     const BlockCells<3, double> other_field(other, data_after.arrays());
     EXPECT_EQ(BlockGrid<3>(before).epoch(), grid.epoch());
-    expect_changed("indicator", [&] { isosurface(other, other_field, 0.1, indicator); });
+    expect_changed("indicator", [&] { isosurface(other, other_field, 0.1, under(indicator, 0)); });
 }
 
 /// Two levels, the second of two boxes.

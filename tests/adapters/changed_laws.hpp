@@ -65,7 +65,7 @@ public:
             {"field, along a line",
              [&] { probe_line(*grid_, *field_, middle_[0], middle_[0], 2); }},
             {"field between frames", [&] { HierarchicalIndicator(*grid_, between_); }},
-            {"hierarchy", [&] { probe<Real>(hierarchy_, middle_); }},
+            {"hierarchy", [&] { probe(hierarchy_, middle_); }},
             {"hierarchy, for a preroll", [&] { HierarchicalIndicator{hierarchy_}; }},
             {"holes", [&] { HierarchicalIndicator{holes_}; }},
             {"hidden elements", [&] { Holes<Real>(now, hidden_); }},
@@ -73,8 +73,8 @@ public:
             {"prerolls",
              [&] {
                  const ChosenIndicator kept = prerolls_.choose("offset", 1, {}, {});
-                 probe<Real>(hierarchy_, middle_, Threshold(kept.indicator.get(), 0.1),
-                             *kept.bounds);
+                 probe(hierarchy_, middle_,
+                       under(Threshold(kept.indicator.get(), 0.1), *kept.bounds));
              }},
             {"data that jump", [&] { probe(jumping_, middle_); }},
         };
@@ -84,9 +84,9 @@ public:
     void draw_jumping(const Grid& grid) const {
         const DiscontinuousData now(grid, one);
         if constexpr (dimension == 2) {
-            shading(now, jumps_);
+            shading(now, {.deviations = &jumps_});
         } else {
-            slice(now, Plane{{0.5, 0.5, 0.5}, {0.3, 0.5, 0.7}}, jumps_);
+            slice(now, Plane{{0.5, 0.5, 0.5}, {0.3, 0.5, 0.7}}, {.deviations = &jumps_});
         }
     }
 
@@ -182,21 +182,21 @@ private:
 template <int dimension, class Real>
 NamedUses drawings(const Hierarchy<Real>& hierarchy, const Criterion& s, const Bounds& bounds) {
     NamedUses all{
-        {"isosurface", [&] { isosurface<dimension>(hierarchy, 0.1, s, bounds); }},
+        {"isosurface", [&] { isosurface<dimension>(hierarchy, 0.1, under(s, bounds)); }},
         {"probe",
          [&] {
-             probe<Real>(hierarchy, std::vector<Point>{{0.3, 0.4, 0}}, s, bounds);
+             probe(hierarchy, std::vector<Point>{{0.3, 0.4, 0}}, under(s, bounds));
          }},
     };
     if constexpr (dimension == 2) {
-        all.emplace_back("height field", [&] { height_field(hierarchy, 1.0, s, bounds); });
-        all.emplace_back("shading", [&] { shading(hierarchy, s, bounds); });
-        all.emplace_back("count", [&] { count_triangles(hierarchy, s, bounds, 10); });
+        all.emplace_back("height field", [&] { height_field(hierarchy, 1.0, under(s, bounds)); });
+        all.emplace_back("shading", [&] { shading(hierarchy, under(s, bounds)); });
+        all.emplace_back("count", [&] { count_triangles(hierarchy, under(s, bounds), 10); });
     } else {
         all.emplace_back("slice", [&] {
-            slice(hierarchy, Plane{{0.5, 0.5, 0.5}, {0.3, 0.5, 0.7}}, s, bounds);
+            slice(hierarchy, Plane{{0.5, 0.5, 0.5}, {0.3, 0.5, 0.7}}, under(s, bounds));
         });
-        all.emplace_back("boundary", [&] { boundary_surface(hierarchy, s, bounds); });
+        all.emplace_back("boundary", [&] { boundary_surface(hierarchy, under(s, bounds)); });
     }
     return all;
 }
@@ -205,9 +205,7 @@ NamedUses drawings(const Hierarchy<Real>& hierarchy, const Criterion& s, const B
 template <int dimension, class Real>
 NamedUses drawings_by(const Hierarchy<Real>& hierarchy, const HierarchicalIndicator& indicator) {
     NamedUses all{
-        {"isosurface", [&] { isosurface<dimension>(hierarchy, 0.1, indicator); }},
-        {"budget",
-         [&] { isosurface<dimension>(hierarchy, 0.1, indicator, {.max_triangles = 1000000}); }},
+        {"isosurface", [&] { isosurface<dimension>(hierarchy, 0.1, under(indicator, 0)); }},
         {"threshold of a budget",
          [&] { find_threshold<dimension>(hierarchy, 0.1, indicator, 1000000); }},
         {"cut deviations", [&] { cut_deviations(hierarchy, std::array{0.1}, indicator); }},

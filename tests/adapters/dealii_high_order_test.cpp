@@ -108,7 +108,7 @@ void expect_within(const Problem<dim>& problem, double tolerance) {
     EXPECT_LE(data.jump(), 1e-11);
     const VirtualRefinement fine(data, {.tolerance = tolerance});
     const auto result =
-        isosurface<dim>(fine, 0.3, fine.criterion(), fine.bounds(), {.verify = true});
+        isosurface<dim>(fine, 0.3, under(fine.criterion(), fine.bounds()), {.verify = true});
     EXPECT_GT(result.surface.simplices.size(), 100U);
     expect_closed(result.surface);
     EXPECT_EQ(result.counts.limited, 0U);
@@ -142,7 +142,7 @@ void expect_closed_hp(double tolerance) {
     EXPECT_EQ(data.greatest_degree(), 6);
     const VirtualRefinement fine(data, {.tolerance = tolerance, .depth = 5});
     const auto result =
-        isosurface<dim>(fine, 0.3, fine.criterion(), fine.bounds(), {.verify = true});
+        isosurface<dim>(fine, 0.3, under(fine.criterion(), fine.bounds()), {.verify = true});
     EXPECT_GT(result.surface.simplices.size(), 100U);
     expect_closed(result.surface);
     EXPECT_LE(result.error_bound, (tolerance + data.jump()) * (1 + 1e-6));
@@ -161,7 +161,7 @@ TEST(DealiiHighOrder, ComponentsOfSystemsAreToldApart) {
     EXPECT_FALSE(check_grid(grid, field).has_value());
     const HighOrder data(grid, field);
     const VirtualRefinement fine(data, {.tolerance = 0.05});
-    const auto result = isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds());
+    const auto result = isosurface<3>(fine, 0.3, under(fine.criterion(), fine.bounds()));
     expect_closed(result.surface);
     expect_colours(result.surface, [](const Point& x) { return x[0]; });
 }

@@ -293,8 +293,8 @@ TEST(Dealii, KeepsTheLawsOnASolution) {
     });
     std::size_t finest = 0;
     for (const double part : {0.0, 0.01, 0.1, 0.5, 1.01}) {
-        const auto result = isosurface(grid, field, 0.5, own,
-                                       {.threshold = part * kelly.linfty_norm(), .verify = true});
+        const auto result =
+            isosurface(grid, field, 0.5, under(own, part * kelly.linfty_norm()), {.verify = true});
         expect_closed(result.surface);
         if (part == 0) finest = result.surface.simplices.size();
         if (part > 1) {
@@ -334,7 +334,7 @@ TEST(Dealii, FollowsTheTriangulation) {
     p.distribute(FE_Q<3>(1));
     set();
     const DealiiField field(grid, *p.dofs, p.values);
-    EXPECT_THROW(isosurface(grid, field, 0.5, before, {}), GridError);
+    EXPECT_THROW(isosurface(grid, field, 0.5, under(before, 0)), GridError);
     EXPECT_EQ(refusal<GridError>([&] { isosurface(grid, field_before, 0.5); }),
               "the grid has changed since the field was made for it: make another one");
     p.values.reinit(p.values.size() + 1);
@@ -398,7 +398,8 @@ TEST(Dealii, CopiesNothing) {
         const double isovalue = 0.5;
         const std::size_t calls = allocation_count();
         extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1),
-                            std::vector<Sink>{Sink(add)}, Threshold{&indicator, 0}, indicator);
+                            std::vector<Sink>{Sink(add)},
+                            under(Threshold{&indicator, 0}, indicator));
         beside[std::size_t(level - 4)] = allocation_count() - calls;
         EXPECT_NEAR(area, dealii::numbers::PI / 4, 0.01);
     }

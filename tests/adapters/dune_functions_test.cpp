@@ -44,8 +44,8 @@ void expect_function_is_seen() {
     if constexpr (order == 1) {
         const DuneVertexField vertex(grid, coefficients);
         static_assert(decltype(vertex)::components == 1);
-        const auto a = isosurface(grid, vertex, 0, IsosurfaceOptions{.threshold = 0.01}).surface;
-        const auto b = isosurface(grid, field, 0, IsosurfaceOptions{.threshold = 0.01}).surface;
+        const auto a = isosurface(grid, vertex, 0, {.threshold = 0.01}).surface;
+        const auto b = isosurface(grid, field, 0, {.threshold = 0.01}).surface;
         EXPECT_GT(a.simplices.size(), 100U);
         EXPECT_EQ(a.vertices, b.vertices);
         EXPECT_EQ(a.simplices, b.simplices);

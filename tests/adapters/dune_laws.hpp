@@ -97,9 +97,8 @@ std::size_t expect_closed_at_all_thresholds(const Grid& grid, const std::vector<
     std::vector<std::size_t> triangles;
     for (const double threshold : six_thresholds) {
         IsosurfaceOptions options;
-        options.threshold = threshold;
         options.verify = true;
-        const auto result = isosurface(grid, field, 0, indicator, options);
+        const auto result = isosurface(grid, field, 0, under(indicator, threshold), options);
         SCOPED_TRACE(threshold);
         expect_closed(result.surface);
         expect_slices_or_shading<Grid::dimension>(erase(grid, field), 0, indicator, threshold);
@@ -126,8 +125,9 @@ void expect_one_thread_only(const Grid& grid) {
     const std::vector<double> values = noise(grid.solver());
     const DuneVertexField field(grid, values);
     const HierarchicalIndicator indicator(grid, field);
-    EXPECT_EQ(refusal([&] { isosurface(grid, field, 0, indicator, {}, ThreadExecutor(2)); }),
-              "this Dune grid can only be walked by the thread that made its adapter");
+    EXPECT_EQ(
+        refusal([&] { isosurface(grid, field, 0, under(indicator, 0), {}, {ThreadExecutor(2)}); }),
+        "this Dune grid can only be walked by the thread that made its adapter");
 }
 
 /// Marks what a sphere of radius 0.35 about the middle of the unit cube passes near, level by

@@ -109,8 +109,8 @@ void expect_function_is_vector(const Solver& solver) {
     const DuneFunctionField function(grid, f);
     const auto violation = check_grid(grid, function);
     ASSERT_FALSE(violation) << violation->sentence;
-    const auto a = isosurface(grid, field, 0, IsosurfaceOptions{.threshold = 0.01}).surface;
-    const auto b = isosurface(grid, function, 0, IsosurfaceOptions{.threshold = 0.01}).surface;
+    const auto a = isosurface(grid, field, 0, {.threshold = 0.01}).surface;
+    const auto b = isosurface(grid, function, 0, {.threshold = 0.01}).surface;
     EXPECT_GT(a.simplices.size(), 8U);
     EXPECT_EQ(a.vertices, b.vertices);
     EXPECT_EQ(a.simplices, b.simplices);
@@ -191,7 +191,7 @@ TEST(DuneGrid, NoticesThatItWasAdapted) {
               "there are " + vertices + " values, but the leaf grid has " +
                   std::to_string(solver->size(3)) + " vertices");
     values = noise(*solver);
-    EXPECT_EQ(refusal<GridError>([&] { isosurface(grid, field, 0, indicator); }),
+    EXPECT_EQ(refusal<GridError>([&] { isosurface(grid, field, 0, under(indicator, 0)); }),
               "the grid has changed since its indicator was computed");
     EXPECT_EQ(refusal<GridError>([&] { derive_hanging_nodes(grid); }),
               "the Dune grid was adapted; its adapter must be made anew");
@@ -240,7 +240,7 @@ TEST(Refusals, OfDune) {
              [&] { HierarchicalIndicator(DuneGrid(*solver), field); });
     values = noise(*solver);
     rows.add<GridError>("an indicator from before an adaptation",
-                        [&] { isosurface(grid, field, 0, indicator); });
+                        [&] { isosurface(grid, field, 0, under(indicator, 0)); });
     rows.add<GridError>("an adapter from before an adaptation",
                         [&] { derive_hanging_nodes(grid); });
 }

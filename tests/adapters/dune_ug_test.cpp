@@ -235,9 +235,9 @@ TEST(DuneUG, ThreadsDrawTheSame) {
     const DuneVertexField field(grid, values);
     const HierarchicalIndicator indicator(grid, field);
     IsosurfaceOptions options;
-    options.threshold = 0.3;
-    const auto one = isosurface(grid, field, 0, indicator, options).surface;
-    const auto four = isosurface(grid, field, 0, indicator, options, ThreadExecutor(4)).surface;
+    const auto one = isosurface(grid, field, 0, under(indicator, 0.3), options).surface;
+    const auto four =
+        isosurface(grid, field, 0, under(indicator, 0.3), options, {ThreadExecutor(4)}).surface;
     EXPECT_GT(one.simplices.size(), 1000U);
     EXPECT_EQ(one.vertices, four.vertices);
     EXPECT_EQ(one.simplices, four.simplices);

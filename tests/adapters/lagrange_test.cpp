@@ -149,7 +149,7 @@ Isosurface<dim> draw(const Mesh& mesh, double isovalue, double tolerance, double
     EXPECT_LE(data.jump(), jump);
     const VirtualRefinement fine(data, {.tolerance = tolerance});
     auto result =
-        isosurface<dim>(fine, isovalue, fine.criterion(), fine.bounds(), {.verify = true});
+        isosurface<dim>(fine, isovalue, under(fine.criterion(), fine.bounds()), {.verify = true});
     EXPECT_LE(result.error_bound, (tolerance + data.jump()) * (1 + 1e-6));
     return result;
 }

@@ -273,15 +273,15 @@ TEST(P4estFields, LargeForestsAreReadInPlace) {
     const HierarchicalIndicator indicator(grid, field);
     EXPECT_LE(indicator.hanging_violation(), 0);
     for (const double threshold : six_thresholds) {
-        const auto one = isosurface(grid, field, 0, indicator, {.threshold = threshold});
+        const auto one = isosurface(grid, field, 0, under(indicator, threshold));
         expect_closed(one.surface);
         const auto two =
-            isosurface(grid, field, 0, indicator, {.threshold = threshold}, ThreadExecutor(2));
+            isosurface(grid, field, 0, under(indicator, threshold), {}, {ThreadExecutor(2)});
         EXPECT_EQ(one.surface.vertices, two.surface.vertices);
         EXPECT_EQ(one.surface.simplices, two.surface.simplices);
     }
     const P4estBalancedGrid balanced(forest.get(), nodes.get());
-    const auto a = isosurface(grid, field, 0, indicator, {.threshold = 0.01});
+    const auto a = isosurface(grid, field, 0, under(indicator, 0.01));
     const auto b = isosurface(balanced, field, 0, {.threshold = 0.01});
     EXPECT_EQ(a.surface.vertices, b.surface.vertices);
     EXPECT_EQ(a.surface.simplices, b.surface.simplices);
@@ -307,7 +307,7 @@ TEST(P4estFields, NoticeThatTheForestHasChanged) {
     const auto cells = own_data(grid);
     const HierarchicalIndicator indicator(grid, cells);
     forest.refine([](const p8est_quadrant_t& q) { return q.level < 4; });
-    EXPECT_THROW(isosurface(grid, cells, 0, indicator), GridError);
+    EXPECT_THROW(isosurface(grid, cells, 0, under(indicator, 0)), GridError);
     EXPECT_THROW(isosurface(grid, cells, 0), GridError);
     EXPECT_THROW(isosurface(grid, nodal, 0), GridError);
 }

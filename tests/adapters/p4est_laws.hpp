@@ -108,7 +108,7 @@ void expect_closed_surfaces(
     for (const double threshold : six_thresholds) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
         const auto result =
-            isosurface<dim>(hierarchy, 0, indicator, {.threshold = threshold, .verify = true});
+            isosurface<dim>(hierarchy, 0, under(indicator, threshold), {.verify = true});
         if constexpr (dim == 2) {
             if (expected.orientable) expect_closed(result.surface);
             if (!expected.orientable) expect_lines(result.surface);

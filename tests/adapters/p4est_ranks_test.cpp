@@ -188,13 +188,13 @@ std::vector<Drawn> draw(const AnyGrid& grid, const Field& field) {
     };
     for (const double epsilon : {0.0, 0.01, 0.3}) {
         for (const bool cap : {false, true}) {
-            add(isosurface(grid, field, 0.0, indicator, {.threshold = epsilon, .cap = cap}));
+            add(isosurface(grid, field, 0.0, under(indicator, epsilon), {.cap = cap}));
         }
     }
     for (const Point& normal : {Point{1, 1, 0}, Point{1, 0, 0}, Point{0.3, 0.2, 1}}) {
         const Plane plane({0.5, 0.5, 0.5}, normal);
         add(slice(grid, field, plane));
-        add(slice(grid, field, plane, indicator, {.threshold = 0.3}));
+        add(slice(grid, field, plane, under(indicator, 0.3)));
     }
     return all;
 }
@@ -350,7 +350,7 @@ int end_together(Ranks& ranks) {
         const HierarchicalIndicator indicator(grid, field);
         expect(last == 0 ? "isovalue" : "all ranks must ask for the same", [&] {
             const double other = last == 0 ? std::nan("") : 0.125;
-            isosurface(grid, field, ranks.rank() == last ? other : 0.0, indicator);
+            isosurface(grid, field, ranks.rank() == last ? other : 0.0, under(indicator, 0));
         });
     }
     p8est_connectivity_destroy(cube);

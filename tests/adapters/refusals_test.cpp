@@ -89,7 +89,7 @@ TEST(Refusals, OfStoredGrids) {
     const std::vector<double> more(grid.node_count(), 1.0);
     const Field after(grid, more);
     rows.add<GridError>("an indicator from before a refinement",
-                        [&] { isosurface(grid, after, 0.5, indicator, {.threshold = 0.1}); });
+                        [&] { isosurface(grid, after, 0.5, under(indicator, 0.1)); });
 }
 
 TEST(Refusals, OfLattices) {

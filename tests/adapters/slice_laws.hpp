@@ -57,7 +57,8 @@ template <class Real>
 void expect_slices(const Hierarchy<Real>& hierarchy, double isovalue,
                    const HierarchicalIndicator& indicator, double threshold) {
     const Threshold criterion(&indicator, threshold);
-    const auto boundary = boundary_surface(hierarchy, criterion, indicator, {.verify = true});
+    const auto boundary =
+        boundary_surface(hierarchy, under(criterion, indicator), {.verify = true});
     expect_closed(boundary.surface, true);
     Point low = boundary.surface.vertices.at(0);
     Point high = low;
@@ -70,7 +71,7 @@ void expect_slices(const Hierarchy<Real>& hierarchy, double isovalue,
     for (const Point& normal : slice_normals) {
         SCOPED_TRACE(testing::Message() << "normal " << testing::PrintToString(normal));
         const nestgrid::Plane plane(0.5 * (low + high), normal);
-        const auto drawn = slice(hierarchy, plane, criterion, indicator, {.verify = true});
+        const auto drawn = slice(hierarchy, plane, under(criterion, indicator), {.verify = true});
         expect_closed(drawn.surface);
         double off = 0;
         for (const Point& x : drawn.surface.vertices) {
@@ -87,18 +88,18 @@ template <class Real>
 void expect_shading(const Hierarchy<Real>& hierarchy, double isovalue,
                     const HierarchicalIndicator& indicator, double threshold,
                     bool orientable = true) {
-    const Surface<3> triangles = shading(hierarchy, indicator, {.threshold = threshold}).surface;
+    const Surface<3> triangles = shading(hierarchy, under(indicator, threshold)).surface;
     const SurfaceReport report = surface_report(triangles);
     EXPECT_EQ(report.open_edges, 0U);
     EXPECT_EQ(report.nonmanifold_edges, 0U);
     EXPECT_EQ(report.boundary_edges, triangles.boundary.size());
     EXPECT_TRUE(!orientable || report.misoriented_edges == 0);
     if (!orientable) return;
-    const IsosurfaceOptions options{.threshold = threshold};
-    const Surface<2> segments = isosurface<2>(hierarchy, isovalue, indicator, options).surface;
+    const Surface<2> segments =
+        isosurface<2>(hierarchy, isovalue, under(indicator, threshold)).surface;
     std::set<Point> ends;
     for (const auto& [v] : segments.boundary) ends.insert(segments.vertices[v]);
-    expect_ends(isolines(hierarchy, std::array{isovalue}, indicator, options).lines, ends);
+    expect_ends(isolines(hierarchy, std::array{isovalue}, under(indicator, threshold)).lines, ends);
 }
 
 /// One of the two, by the dimension.
@@ -131,7 +132,7 @@ template <class Real, class Function>
 void expect_exact_slices(const Hierarchy<Real>& hierarchy, const HierarchicalIndicator& indicator,
                          double threshold, const Function& f) {
     const Threshold criterion(&indicator, threshold);
-    const auto boundary = boundary_surface(hierarchy, criterion, indicator).surface;
+    const auto boundary = boundary_surface(hierarchy, under(criterion, indicator)).surface;
     EXPECT_NEAR(surface_report(boundary).area, 6, 1e-12);
     EXPECT_NEAR(surface_report(boundary).volume, 1, 1e-12);
     expect_coloured_by(boundary, f);
@@ -140,7 +141,8 @@ void expect_exact_slices(const Hierarchy<Real>& hierarchy, const HierarchicalInd
             SCOPED_TRACE(testing::Message() << "normal " << testing::PrintToString(normal)
                                             << " through " << testing::PrintToString(through));
             const auto drawn =
-                slice(hierarchy, nestgrid::Plane(through, normal), criterion, indicator).surface;
+                slice(hierarchy, nestgrid::Plane(through, normal), under(criterion, indicator))
+                    .surface;
             EXPECT_NEAR(surface_report(drawn).area, area_in_cube(through, normal), 1e-12);
             expect_coloured_by(drawn, f);
         }
@@ -152,10 +154,10 @@ void expect_exact_slices(const Hierarchy<Real>& hierarchy, const HierarchicalInd
 template <class Real, class Function>
 void expect_exact_shading(const Hierarchy<Real>& hierarchy, const HierarchicalIndicator& indicator,
                           double threshold, const Function& f) {
-    const auto flat = shading(hierarchy, indicator, {.threshold = threshold}).surface;
+    const auto flat = shading(hierarchy, under(indicator, threshold)).surface;
     EXPECT_NEAR(surface_report(flat).area, 1, 1e-12);
     expect_coloured_by(flat, f);
-    const auto graph = height_field(hierarchy, 2, indicator, {.threshold = threshold}).surface;
+    const auto graph = height_field(hierarchy, 2, under(indicator, threshold)).surface;
     double error = 0;
     for (const Point& x : graph.vertices) {
         error = std::max(error, std::abs(x[2] - 2 * f({x[0], x[1], 0})));
@@ -177,7 +179,7 @@ void expect_exact_values(const Hierarchy<Real>& hierarchy, const HierarchicalInd
     for (Point& x : points) {
         for (std::size_t d = 0; d < dimension; ++d) x[d] = uniform(random);
     }
-    const auto found = probe(hierarchy, points, Threshold(&indicator, threshold), indicator);
+    const auto found = probe(hierarchy, points, under(indicator, threshold));
     for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_NEAR(found.values[i], f(points[i]), 1e-12);
     }

@@ -53,8 +53,8 @@ std::size_t expect_closed_level(const Grid& grid, const Field& field, double iso
     expect_single_valued(grid, field, indicator, threshold);
     std::size_t triangles = std::numeric_limits<std::size_t>::max();
     for (const bool cap : {false, true}) {
-        const auto result = isosurface(grid, field, isovalue, indicator,
-                                       {.threshold = threshold, .cap = cap, .verify = true});
+        const auto result = isosurface(grid, field, isovalue, under(indicator, threshold),
+                                       {.cap = cap, .verify = true});
         expect_closed(result.surface, cap);
         triangles = std::min(triangles, result.surface.simplices.size());
     }
@@ -120,15 +120,15 @@ void expect_pieces_of_one(const Grid& grid) {
     const ElementDeviations deviations(data);
     std::size_t before = std::numeric_limits<std::size_t>::max();
     for (const double threshold : {0.0, 1e-12}) {
-        const DiscontinuousOptions options{.threshold = threshold};
+        const DiscontinuousOptions options{.threshold = threshold, .deviations = &deviations};
         DiscontinuousSurface drawn;
         if constexpr (Grid::dimension == 2) {
-            drawn = shading(data, deviations, options);
+            drawn = shading(data, options);
             EXPECT_NEAR(size_of(drawn.surface), 1, 1e-12);
         } else {
             const Point& slope = slanted_plane.slope;
             const Plane plane(slanted_plane.isovalue / dot(slope, slope) * slope, slope);
-            drawn = slice(data, plane, deviations, options);
+            drawn = slice(data, plane, options);
             EXPECT_NEAR(size_of(drawn.surface), slanted_plane.area(3), 1e-12);
         }
         for (const double u : drawn.surface.attributes) EXPECT_NEAR(u, 1, 1e-14);
@@ -147,7 +147,7 @@ void expect_linear_exact(const Grid& grid, const Field& field) {
     expect_pieces_of_one(grid);
     for (const double threshold : {0.0, 1e-12, 1.0}) {
         const auto surface =
-            isosurface(grid, field, plane.isovalue, indicator, {.threshold = threshold}).surface;
+            isosurface(grid, field, plane.isovalue, under(indicator, threshold)).surface;
         double off = 0;
         for (const Point& x : surface.vertices) {
             off = std::max(off, std::abs(plane(x) - plane.isovalue));

@@ -109,8 +109,8 @@ void expect_agreement(int steps, std::size_t least_leaves) {
     std::size_t triangles = std::numeric_limits<std::size_t>::max();
     for (const double threshold : {0.0, 1e-3, 1e-2}) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
-        const auto a = isosurface(grid, field, 0, indicator, {.threshold = threshold});
-        const auto b = isosurface(other, other_field, 0, other_indicator, {.threshold = threshold});
+        const auto a = isosurface(grid, field, 0, under(indicator, threshold));
+        const auto b = isosurface(other, other_field, 0, under(other_indicator, threshold));
         EXPECT_EQ(a.counts.calls, b.counts.calls);
         EXPECT_EQ(a.counts.visited, b.counts.visited);
         EXPECT_EQ(a.counts.extracted, b.counts.extracted);

@@ -46,9 +46,11 @@ TEST(TbbExecutor, ExtractsWhatOneThreadDoes) {
         SCOPED_TRACE(data.name);
         const LatticeField field(grid, std::span<const float>(data.values));
         const HierarchicalIndicator indicator(grid, field);
-        const IsosurfaceOptions options{.threshold = 0.02 * data.range, .normals = true};
-        const auto one = isosurface(grid, field, data.isovalue, indicator, options);
-        const auto two = isosurface(grid, field, data.isovalue, indicator, options, TbbExecutor(2));
+        const IsosurfaceOptions options{.normals = true};
+        const auto one =
+            isosurface(grid, field, data.isovalue, under(indicator, 0.02 * data.range), options);
+        const auto two = isosurface(grid, field, data.isovalue, under(indicator, 0.02 * data.range),
+                                    options, {TbbExecutor(2)});
         EXPECT_EQ(one.surface.vertices, two.surface.vertices);
         EXPECT_EQ(one.surface.normals, two.surface.normals);
         EXPECT_EQ(one.surface.simplices, two.surface.simplices);

@@ -146,9 +146,8 @@ TYPED_TEST(Unions, OfAGridWithItselfAreThatGrid) {
             const HierarchicalIndicator indicator(both, frame);
             EXPECT_EQ(indicator.node_count(), grid.used_node_count());
             for (const double threshold : {0.0, 0.05}) {
-                const IsosurfaceOptions options{.threshold = threshold};
-                const auto expected = isosurface(grid, field, 0.0, own, options);
-                const auto drawn = isosurface(both, frame, 0.0, indicator, options);
+                const auto expected = isosurface(grid, field, 0.0, under(own, threshold));
+                const auto drawn = isosurface(both, frame, 0.0, under(indicator, threshold));
                 EXPECT_EQ(drawn.counts.visited, expected.counts.visited);
                 EXPECT_EQ(drawn.counts.extracted, expected.counts.extracted);
                 EXPECT_EQ(drawn.error_bound, expected.error_bound);
@@ -174,7 +173,7 @@ TYPED_TEST(Unions, DrawClosedFilms) {
             for (const double threshold : {0.0, 0.1}) {
                 SCOPED_TRACE(testing::Message() << "t " << t << ", threshold " << threshold);
                 const Threshold s(&indicator, threshold);
-                const auto drawn = isosurface(frames.both, field, 0.0, s, indicator);
+                const auto drawn = isosurface(frames.both, field, 0.0, under(s, indicator));
                 expect_closed(drawn.surface);
                 const auto probed = probe(frames.both, field, drawn.surface.vertices);
                 for (std::size_t v = 0; v < probed.values.size(); ++v) {
@@ -183,9 +182,10 @@ TYPED_TEST(Unions, DrawClosedFilms) {
                 }
                 if constexpr (TypeParam::Grid::dimension == 3) {
                     const Plane plane({0.4, 0.5, 0.49}, {0.3, 0.5, 0.81});
-                    expect_closed(slice(frames.both, field, plane, s, indicator).surface);
+                    expect_closed(slice(frames.both, field, plane, under(s, indicator)).surface);
                 }
-                expect_same(isosurface(frames.both, field, 0.0, s, indicator, {}, ThreadExecutor(3))
+                expect_same(isosurface(frames.both, field, 0.0, under(s, indicator), {},
+                                       {ThreadExecutor(3)})
                                 .surface,
                             drawn.surface);
             }

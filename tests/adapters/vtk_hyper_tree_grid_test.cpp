@@ -119,7 +119,7 @@ TEST(HyperTreeGrid, SurfacesCarryTheDataOfLeaves) {
         return values[static_cast<std::size_t>(grid.index(e))];
     });
     const HierarchicalIndicator indicator(grid, field);
-    const Surface<3> surface = isosurface(grid, field, 0.7, Exact{}, indicator).surface;
+    const Surface<3> surface = isosurface(grid, field, 0.7, under(Exact{}, indicator)).surface;
     const auto elements = surface.elements.as<HyperTreeGrid<3>::Element>();
     ASSERT_GT(surface.simplices.size(), 500U);
     for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
@@ -175,8 +175,7 @@ void expect_laws_beside_a_mask(vtkHyperTreeGrid& trees, unsigned seed) {
     for (const double threshold : {0.0, 0.01, 0.1, 1.0}) {
         SCOPED_TRACE(threshold);
         const auto surface =
-            isosurface(grid, field, 0.0, indicator, {.threshold = threshold, .verify = true})
-                .surface;
+            isosurface(grid, field, 0.0, under(indicator, threshold), {.verify = true}).surface;
         EXPECT_GT(surface.simplices.size(), 20U);
         for (const Element& e : surface.elements.template as<Element>()) {
             EXPECT_EQ(grid.hidden(e), Hidden::not_at_all);
@@ -362,7 +361,7 @@ TEST(Refusals, OfHyperTreeGrids) {
     rows.add<GridError>("means of cells from before a change",
                         [&] { HierarchicalIndicator(grid, field); });
     rows.add<GridError>("an indicator from before a change",
-                        [&] { isosurface(anew, field_anew, 0.5, indicator); });
+                        [&] { isosurface(anew, field_anew, 0.5, under(indicator, 0)); });
 }
 
 }  // namespace

@@ -27,9 +27,8 @@ TEST(IsosurfacesForC, KeepWhatOptionsAskFor) {
         scene.options.normals = scene.options.elements = scene.options.reference = 1;
         scene.options.cap = 1;
         scene.options.threads = 1;
-        const auto direct =
-            isosurface(scene.grid, scene.both, isovalue,
-                       {.threshold = 0.05, .normals = true, .cap = true, .reference = true});
+        const auto direct = isosurface(scene.grid, scene.both, isovalue, {.threshold = 0.05},
+                                       {.normals = true, .cap = true, .reference = true});
         EXPECT_GT(direct.surface.attributes.size(), 0U);
         for (const int threads : {0, 1, 3, NESTGRID_ALL_THREADS}) {
             scene.options.threads = threads;
@@ -65,12 +64,13 @@ TEST(IsosurfacesForC, HaveEveryIndicator) {
         };
         expect(NESTGRID_OFFSET, offsets, offsets);
         expect(NESTGRID_DEVIATION, deviations, deviations);
-        expect(NESTGRID_NUMERICAL, numerical_indicator(scene.grid, scene.first), offsets);
-        expect(NESTGRID_WAVELET, wavelet_indicator(scene.grid, scene.first), offsets);
-        expect(NESTGRID_VISUAL, visual_indicator(scene.grid, scene.first), offsets);
-        expect(NESTGRID_NORM, norm_indicator(scene.grid, scene.first), offsets);
-        expect(NESTGRID_CUT, cut_deviations(scene.grid, scene.first, levels, offsets), offsets);
-        expect(NESTGRID_SLOPE, slope_deviations(scene.grid, scene.first, levels, offsets), offsets);
+        expect(NESTGRID_NUMERICAL, numerical_indicator({scene.grid, scene.first}), offsets);
+        expect(NESTGRID_WAVELET, wavelet_indicator({scene.grid, scene.first}), offsets);
+        expect(NESTGRID_VISUAL, visual_indicator({scene.grid, scene.first}), offsets);
+        expect(NESTGRID_NORM, norm_indicator({scene.grid, scene.first}), offsets);
+        expect(NESTGRID_CUT, cut_deviations({scene.grid, scene.first}, levels, offsets), offsets);
+        expect(NESTGRID_SLOPE, slope_deviations({scene.grid, scene.first}, levels, offsets),
+               offsets);
     });
 }
 
@@ -80,7 +80,7 @@ TEST(IsosurfacesForC, KeepAnError) {
         const double level = isovalue;
         const HierarchicalIndicator offsets(scene.grid, scene.first);
         const HierarchicalIndicator deviations(scene.grid, scene.first, NodeError::deviation);
-        const auto cuts = cut_deviations(scene.grid, scene.first, std::span(&level, 1), offsets);
+        const auto cuts = cut_deviations({scene.grid, scene.first}, std::span(&level, 1), offsets);
         const bool simplices = scene.grid.cells[0].shape == Shape::triangle ||
                                scene.grid.cells[0].shape == Shape::tetrahedron;
         const auto direct = simplices
@@ -105,15 +105,16 @@ TEST(IsosurfacesForC, KeepWithinABudget) {
         scene.options.max_triangles = 60;
         nestgrid_surface surface = draw(scene);
         const HierarchicalIndicator offsets(scene.grid, scene.first);
-        const auto search = find_threshold(scene.grid, scene.first, isovalue, offsets, 60);
+        const auto search = find_threshold<std::remove_cvref_t<decltype(scene.grid)>::dimension>(
+            erase(scene.grid, scene.first), isovalue, offsets, 60);
         nestgrid_surface_details d{};
         d.size = sizeof(d);
         ASSERT_EQ(nestgrid_details(&surface, &d, nullptr, 0), 0);
         EXPECT_EQ(d.threshold, search.threshold);
         EXPECT_EQ(d.budget_text, search.reason());
         EXPECT_LE(surface.simplex_count, 60U);
-        expect_same(surface, isosurface(scene.grid, scene.first, isovalue,
-                                        {.max_triangles = 60, .elements = false}));
+        expect_same(surface, isosurface(scene.grid, scene.first, isovalue, {.max_triangles = 60},
+                                        {.elements = false}));
     });
 }
 
@@ -191,8 +192,8 @@ TEST(BandsForC, AreThoseOfTheLibrary) {
                   0)
             << scene.message.data();
         const HierarchicalIndicator offsets(scene.grid, scene.first);
-        expect_same(surface, isoband(scene.grid, scene.first, 0.1, 0.3, Threshold(&offsets, 0.05),
-                                     offsets, {.elements = false}));
+        expect_same(surface, isoband(scene.grid, scene.first, 0.1, 0.3, under(offsets, 0.05),
+                                     {.elements = false}));
     });
 }
 
@@ -240,7 +241,7 @@ TEST(PrerollsForC, ServeSeveralCalls) {
     scene.options.threshold = 0.1;
     const HierarchicalIndicator offsets(scene.grid, scene.first);
     const HierarchicalIndicator deviations(scene.grid, scene.first, NodeError::deviation);
-    const SweptIndicator visual = visual_indicator(scene.grid, scene.first);
+    const SweptIndicator visual = visual_indicator({scene.grid, scene.first});
     for (int i = 0; i < 2; ++i) {
         scene.options.indicator = NESTGRID_OFFSET;
         nestgrid_surface surface = draw(scene);

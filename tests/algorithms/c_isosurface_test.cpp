@@ -90,7 +90,7 @@ TEST(IsosurfaceForC, IsCutWhereTheFinestDataAre) {
               0)
         << message.data();
     const auto direct =
-        isosurface(grid, field, data.isovalue, {.threshold = 0.1, .cuts = Cuts::finest});
+        isosurface(grid, field, data.isovalue, {.threshold = 0.1}, {.cuts = Cuts::finest});
     ASSERT_EQ(surface.vertex_count, direct.surface.vertices.size());
     for (std::size_t v = 0; v < surface.vertex_count; ++v) {
         for (std::size_t d = 0; d < 3; ++d) {

@@ -31,10 +31,9 @@ TEST(ProbesForC, AreTheSame) {
                                &scene.options, &probed, scene.message.data(), 200),
                 0)
                 << scene.message.data();
-            const ProbeResult direct = threshold == 0
-                                           ? probe(scene.grid, scene.both, points)
-                                           : probe(scene.grid, scene.both, points,
-                                                   Threshold(&offsets, threshold), offsets);
+            const ProbeResult direct =
+                threshold == 0 ? probe(scene.grid, scene.both, points)
+                               : probe(scene.grid, scene.both, points, under(offsets, threshold));
             ASSERT_EQ(probed.point_count, points.size());
             ASSERT_EQ(probed.component_count, 2U);
             EXPECT_EQ(probed.found, 50U);

@@ -183,7 +183,7 @@ nestgrid_surface draw(Scene<dim>& scene) {
 template <int dim>
 auto draw_directly(const Scene<dim>& scene, const Criterion& s, const Bounds& bounds,
                    bool keep = false) {
-    return isosurface(scene.grid, scene.first, isovalue, s, bounds, {.elements = keep});
+    return isosurface(scene.grid, scene.first, isovalue, under(s, bounds), {.elements = keep});
 }
 
 }  // namespace c_algorithms_test

@@ -79,8 +79,7 @@ TEST_F(SlicesForC, AreTheSameAlongPlanes) {
         scene.options.error = 0.1;
         const HierarchicalIndicator deviations(scene.grid, scene.first, NodeError::deviation);
         surface = cut();
-        expect_same(surface,
-                    slice(scene.grid, scene.both, plane, Threshold(&deviations, 0.1), deviations));
+        expect_same(surface, slice(scene.grid, scene.both, plane, under(deviations, 0.1)));
     }
 }
 
@@ -94,8 +93,8 @@ TEST_F(SlicesForC, HaveTheBoundaryOfTheDomain) {
                                                 &surface, scene.message.data(), 200),
                       0)
                 << scene.message.data();
-            expect_same(surface, boundary_surface(scene.grid, scene.first,
-                                                  {.threshold = threshold, .elements = false}));
+            expect_same(surface, boundary_surface(scene.grid, scene.first, {.threshold = threshold},
+                                                  {.elements = false}));
         }
     }
 }
@@ -116,7 +115,7 @@ TEST_F(SlicesForC, AreTheSameAlongFunctions) {
                       0)
                 << scene.message.data();
             const Sphere sphere({0, 0, 0}, radius);
-            const auto direct = slice(scene.grid, scene.first, sphere, {.elements = false});
+            const auto direct = slice(scene.grid, scene.first, sphere, {}, {.elements = false});
             ASSERT_GT(direct.surface.simplices.size(), 0U);
             EXPECT_EQ(surface.simplex_count, direct.surface.simplices.size());
             EXPECT_EQ(surface.visited == direct.counts.visited, bounded);

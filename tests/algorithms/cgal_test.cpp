@@ -49,8 +49,8 @@ TEST(Cgal, FindsEverySurfaceInsideTheDomainClosed) {
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : thresholds) {
             SCOPED_TRACE(data.name + " at " + std::to_string(threshold));
-            const auto result = isosurface(grid, field, data.isovalue, indicator,
-                                           {.threshold = threshold * data.range, .cap = true});
+            const auto result = isosurface(grid, field, data.isovalue,
+                                           under(indicator, threshold * data.range), {.cap = true});
             const Mesh mesh = to_cgal(result.surface);
             EXPECT_TRUE(CGAL::is_closed(mesh));
             EXPECT_TRUE(CGAL::is_valid_polygon_mesh(mesh));
@@ -67,7 +67,7 @@ void expect_closed_for_cgal(Grid grid, int levels) {
         for (const double threshold : {0.0, 0.1, 1.0}) {
             SCOPED_TRACE(samples.name + " at " + std::to_string(threshold));
             const auto result =
-                isosurface(grid, field, 0.0, indicator, {.threshold = threshold, .cap = true});
+                isosurface(grid, field, 0.0, under(indicator, threshold), {.cap = true});
             const Mesh mesh = to_cgal(result.surface);
             EXPECT_TRUE(CGAL::is_closed(mesh));
             EXPECT_TRUE(CGAL::is_valid_polygon_mesh(mesh));

@@ -124,8 +124,8 @@ void expect_closed_at(const Grid& grid, const NodalSamples& samples,
         for (const bool cap : {false, true}) {
             SCOPED_TRACE(samples.name + " at threshold " + std::to_string(threshold) +
                          (cap ? ", capped" : ""));
-            const auto result = isosurface(grid, field, 0.0, indicator,
-                                           {.threshold = threshold, .cap = cap, .verify = true});
+            const auto result = isosurface(grid, field, 0.0, under(indicator, threshold),
+                                           {.cap = cap, .verify = true});
             expect_closed(result.surface, cap);
             if (!cap) {
                 expect_counts_of_inspection(result.counts, grid, field, indicator, threshold);
@@ -203,9 +203,9 @@ TEST(ClosedLevelSetsOfSamples, OnTheImplicitOctree) {
             for (const double threshold : thresholds) {
                 for (const bool cap : {false, true}) {
                     SCOPED_TRACE(data.name + " at " + std::to_string(threshold));
-                    const auto result = isosurface(
-                        grid, field, data.isovalue, indicator,
-                        {.threshold = threshold * data.range, .cap = cap, .verify = true});
+                    const auto result = isosurface(grid, field, data.isovalue,
+                                                   under(indicator, threshold * data.range),
+                                                   {.cap = cap, .verify = true});
                     expect_closed(result.surface, cap);
                     EXPECT_GT(result.surface.simplices.size(), 0U);
                 }

@@ -310,9 +310,9 @@ public:
             values.push_back(sum);
         }
         const NodeField<RedGreenSimplices<3>, double> field(grid_, values);
-        const auto surface =
-            isosurface(grid_, field, 0.0, Exact{}, Everywhere{epoch(grid_)}, {.elements = false})
-                .surface;
+        const auto surface = isosurface(grid_, field, 0.0, under(Exact{}, Everywhere{epoch(grid_)}),
+                                        {.elements = false})
+                                 .surface;
         const SurfaceReport report = surface_report(surface);
         return {report.components, report.euler};
     }
@@ -342,7 +342,7 @@ TEST(Contour, HasTheTopologyOfTheLevelSet) {
             }
             const OneCell cell{shape};
             const OneCellField field{u};
-            const auto surface = isosurface(cell, field, 0.0, {}).surface;
+            const auto surface = isosurface(cell, field, 0.0).surface;
             const SurfaceReport report = surface_report(surface);
             EXPECT_EQ(report.open_edges, 0U);
             EXPECT_TRUE(report.manifold());

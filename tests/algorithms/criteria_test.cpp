@@ -41,7 +41,7 @@ struct SphereOfSamples {
 
     template <class S>
     Isosurface<3> draw(const S& criterion) const {
-        return isosurface(grid, field, data.isovalue, criterion, indicator);
+        return isosurface(grid, field, data.isovalue, under(criterion, indicator));
     }
 };
 
@@ -71,8 +71,9 @@ TEST(Criteria, ByLevelAreRefusedWhereNodesHaveSeveralLevels) {
     const Threshold exact(&indicator, 0);
     for (const int level : {1, 4}) {
         const DeepestLevel deepest(level);
-        expect_refused([&] { isosurface(grid, field, 0.0, deepest, indicator); }, "NodeLevels");
-        expect_refused([&] { isosurface(grid, field, 0.0, deepest || exact, indicator); },
+        expect_refused([&] { isosurface(grid, field, 0.0, under(deepest, indicator)); },
+                       "NodeLevels");
+        expect_refused([&] { isosurface(grid, field, 0.0, under(deepest || exact, indicator)); },
                        "NodeLevels");
     }
 }
@@ -92,17 +93,17 @@ TYPED_TEST(NodeLevelsOn, DrawClosedSurfacesAtEveryDepth) {
             for (int depth = 0; depth <= 3 * TypeParam::steps + 1; ++depth) {
                 SCOPED_TRACE(samples.name + " at depth " + std::to_string(depth));
                 const auto result =
-                    isosurface(grid, field, 0.0, levels.deeper_than(depth), indicator);
+                    isosurface(grid, field, 0.0, under(levels.deeper_than(depth), indicator));
                 expect_closed(result.surface);
                 last = result.surface.simplices.size();
                 if (!indicator.one_level_a_node()) continue;
                 // Where a node has one level, the level of the element says the same.
                 const auto by_element =
-                    isosurface(grid, field, 0.0, DeepestLevel(depth), indicator);
+                    isosurface(grid, field, 0.0, under(DeepestLevel(depth), indicator));
                 EXPECT_EQ(result.surface.vertices, by_element.surface.vertices);
                 EXPECT_EQ(result.surface.simplices, by_element.surface.simplices);
             }
-            const auto whole = isosurface(grid, field, 0.0, Exact{}, indicator);
+            const auto whole = isosurface(grid, field, 0.0, under(Exact{}, indicator));
             EXPECT_EQ(last, whole.surface.simplices.size());
         }
     }

@@ -35,7 +35,7 @@ struct Case {
 
     double greatest() const { return indicator.greatest() - indicator.least(); }
     std::size_t triangles(double isovalue, const Criterion& s) const {
-        return isosurface(grid, field, isovalue, s, indicator).surface.simplices.size();
+        return isosurface(grid, field, isovalue, under(s, indicator)).surface.simplices.size();
     }
 };
 
@@ -72,7 +72,7 @@ TYPED_TEST(FrameBudgets, HoldSurfacesWhileTheIsovalueMoves) {
 
 TYPED_TEST(FrameBudgets, HoldSurfacesByAnotherIndicator) {
     const Case<TypeParam> c;
-    const SweptIndicator jumps = numerical_indicator(c.grid, c.field);
+    const SweptIndicator jumps = numerical_indicator({c.grid, c.field});
     expect_held(20000, 0.05, 1, [&](int i, double threshold) {
         return c.triangles(c.data.isovalue + 0.002 * i, Threshold(&jumps, threshold));
     });
@@ -83,7 +83,7 @@ TYPED_TEST(FrameBudgets, HoldSlicesWhileThePlaneMoves) {
     const Case<TypeParam> c{sampled_fields({65, 65, 65})[2]};  // a gyroid
     expect_held(2500, 0.12, c.greatest(), [&](int i, double threshold) {
         const Plane plane({0, 0, 20 + 0.1 * i}, {0.1, 0.2, 1});
-        return slice(c.grid, c.field, plane, c.indicator, {.threshold = threshold})
+        return slice(c.grid, c.field, plane, under(c.indicator, threshold))
             .surface.simplices.size();
     });
 }
@@ -114,7 +114,7 @@ TYPED_TEST(FrameBudgets, HoldSurfacesWhileTimeGoesOn) {
         }
         const LatticeField between(c.grid, std::span<const float>(values));
         const KeyFrames at_time({&c.indicator, &at_next}, std::vector{1 - t, t});
-        return isosurface(c.grid, between, c.data.isovalue, Threshold(&at_time, threshold), at_time)
+        return isosurface(c.grid, between, c.data.isovalue, under(at_time, threshold))
             .surface.simplices.size();
     });
 }
@@ -155,7 +155,8 @@ TYPED_TEST(FrameBudgets, SettleWhereTheSearchForABudgetEnds) {
     const Case<TypeParam> c;
     const double isovalue = c.data.isovalue;
     for (const std::uint64_t goal : {4000U, 20000U, 10'000'000U}) {
-        const TriangleBudget exact = find_threshold(c.grid, c.field, isovalue, c.indicator, goal);
+        const TriangleBudget exact =
+            find_threshold<3>(erase(c.grid, c.field), isovalue, c.indicator, goal);
         FrameBudget budget(static_cast<double>(goal), c.greatest());
         for (const double cost : {1.0, 0.0, 1e9, 1.01}) {
             for (int i = 0; i < 3; ++i) budget.drawn(cost * static_cast<double>(goal));

@@ -51,10 +51,12 @@ void expect_the_rest_unchanged(Forest<dim> forest, int steps) {
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : six_thresholds) {
             SCOPED_TRACE(threshold);
-            const IsosurfaceOptions options{.threshold = threshold, .verify = true};
-            const auto surface = isosurface(grid, field, 0.0, indicator, options).surface;
+            const IsosurfaceOptions options{.verify = true};
+            const auto surface =
+                isosurface(grid, field, 0.0, under(indicator, threshold), options).surface;
             grid.draws_all = true;
-            const auto all = isosurface(grid, field, 0.0, indicator, options).surface;
+            const auto all =
+                isosurface(grid, field, 0.0, under(indicator, threshold), options).surface;
             grid.draws_all = false;
             std::vector<Point> corners;
             for (const auto& s : surface.simplices) {
@@ -66,11 +68,14 @@ void expect_the_rest_unchanged(Forest<dim> forest, int steps) {
             hidden += all.simplices.size() - surface.simplices.size();
 
             const BehindTables tables(grid, field);
-            const auto told = isosurface<dim>(*tables.hierarchy, 0.0, indicator, options).surface;
+            const auto told =
+                isosurface<dim>(*tables.hierarchy, 0.0, under(indicator, threshold), options)
+                    .surface;
             EXPECT_EQ(told.simplices, surface.simplices);
             EXPECT_EQ(told.vertices, surface.vertices);
-            const auto in_threads =
-                isosurface(grid, field, 0.0, indicator, options, ThreadExecutor(3)).surface;
+            const auto in_threads = isosurface(grid, field, 0.0, under(indicator, threshold),
+                                               options, {ThreadExecutor(3)})
+                                        .surface;
             EXPECT_EQ(in_threads.simplices, surface.simplices);
             EXPECT_EQ(in_threads.vertices, surface.vertices);
         }
@@ -99,9 +104,9 @@ TEST(Hidden, ElementsAreNotCounted) {
     for (const double threshold : six_thresholds) {
         const Threshold criterion(&indicator, threshold);
         const std::uint64_t drawn =
-            shading(grid, field, criterion, indicator).surface.simplices.size();
+            shading(grid, field, under(criterion, indicator)).surface.simplices.size();
         EXPECT_GT(drawn, 0U);
-        EXPECT_EQ(count_triangles(grid, field, criterion, indicator, drawn), drawn);
+        EXPECT_EQ(count_triangles({grid, field}, under(criterion, indicator), drawn), drawn);
     }
 }
 

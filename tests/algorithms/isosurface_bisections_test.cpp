@@ -58,13 +58,14 @@ void expect_same_surfaces(const LatticeGeometry<dim>& geometry, const std::vecto
     for (const double threshold : {0.0, 0.01, 0.1, 10.0}) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
         const auto draw = [&](const auto& grid, const auto& field, const auto& criterion) {
-            return isosurfaces(grid, field, isovalues, criterion, indicator);
+            return isosurfaces(grid, field, isovalues, under(criterion, indicator));
         };
         const Threshold by_offset{&indicator, threshold * range};
         const auto check = [&](const auto& criterion) {
             const auto a = draw(known, known_field, criterion);
             const auto b = draw(unknown, unknown_field, criterion);
-            const auto c = isosurfaces<dim>(*tables.hierarchy, isovalues, criterion, indicator);
+            const auto c =
+                isosurfaces<dim>(*tables.hierarchy, isovalues, under(criterion, indicator));
             const auto d = draw(unpatched, unpatched_field, criterion);
             for (std::size_t i = 0; i < a.size(); ++i) {
                 expect_same(a[i], b[i]);
@@ -221,8 +222,9 @@ void expect_same_walks(const Samples& n, const SampledField& data) {
     for (const double threshold : {0.0, 0.003, 0.02, 0.1}) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
         const Threshold criterion{&indicator, threshold * data.range};
-        const auto a = isosurface(known, known_field, data.isovalue, criterion, indicator);
-        const auto b = isosurface(unknown, unknown_field, data.isovalue, criterion, indicator);
+        const auto a = isosurface(known, known_field, data.isovalue, under(criterion, indicator));
+        const auto b =
+            isosurface(unknown, unknown_field, data.isovalue, under(criterion, indicator));
         EXPECT_GT(a.surface.simplices.size(), 0U);
         expect_same(a, b);
     }
@@ -260,11 +262,11 @@ struct SmallField {
         std::vector<Sink> sinks;
         sinks.push_back(std::move(sink));
         extract_isosurfaces(grid, field, std::span<const double>(&data.isovalue, 1),
-                            std::move(sinks), criterion, indicator);
+                            std::move(sinks), under(criterion, indicator));
     }
     auto surface(double threshold, bool verify = false) const {
-        return isosurface(grid, field, data.isovalue, indicator,
-                          {.threshold = threshold, .verify = verify})
+        return isosurface(grid, field, data.isovalue, under(indicator, threshold),
+                          {.verify = verify})
             .surface;
     }
 };
@@ -343,7 +345,7 @@ TEST(KnownBisections, DrawNoMoreThanIsEntered) {
             for (const double threshold : {0.0, 0.003, 0.02}) {
                 const Threshold criterion{&indicator, threshold * data.range};
                 const auto draw = [&](const auto& grid, const auto& field, const auto& by) {
-                    return isosurface(grid, field, data.isovalue, criterion, by);
+                    return isosurface(grid, field, data.isovalue, under(criterion, by));
                 };
                 const auto a = draw(known, known_field, bounds);
                 EXPECT_GT(a.surface.simplices.size(), 0U);
@@ -370,7 +372,8 @@ TEST(KnownBisections, AreVerifiedVertexByVertex) {
     const SharedKeys grid({.samples = small.n});
     const LatticeField field(grid, std::span<const float>(small.data.values));
     const auto draw = [&](bool verify) {
-        return isosurface(grid, field, small.data.isovalue, small.indicator, {.verify = verify});
+        return isosurface(grid, field, small.data.isovalue, under(small.indicator, 0),
+                          {.verify = verify});
     };
     EXPECT_GT(draw(false).surface.vertices.size(), 0U);
     try {
@@ -422,8 +425,8 @@ TEST(KnownBisections, AskForEightNodesWhatTheyAskForOne) {
             }
         }
         // An indicator that is not the one of the bounds is asked for one node at a time.
-        expect_same(isosurface(grid, field, 0.37, criterion, indicator),
-                    isosurface(grid, field, 0.37, criterion, another));
+        expect_same(isosurface(grid, field, 0.37, under(criterion, indicator)),
+                    isosurface(grid, field, 0.37, under(criterion, another)));
     }
 }
 
@@ -439,11 +442,11 @@ TEST(KnownBisections, ReportProgressAndStop) {
         last = counts.calls;
         return true;
     };
-    const auto whole = isosurface(grid, field, data.isovalue, {.progress = grows});
+    const auto whole = isosurface(grid, field, data.isovalue, {}, {.progress = grows});
     EXPECT_GT(last, 0U);
     EXPECT_GT(whole.counts.calls, last);
     const auto part =
-        isosurface(grid, field, data.isovalue, {.progress = [](const auto&) { return false; }});
+        isosurface(grid, field, data.isovalue, {}, {.progress = [](const auto&) { return false; }});
     EXPECT_TRUE(part.cancelled);
     EXPECT_LT(part.surface.simplices.size(), whole.surface.simplices.size());
 }

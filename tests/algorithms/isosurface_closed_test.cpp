@@ -38,8 +38,9 @@ TEST_P(ClosedSurface, AtEveryThreshold) {
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : thresholds) {
             SCOPED_TRACE(data.name + " at " + std::to_string(threshold));
-            const auto result = isosurface(grid, field, data.isovalue, indicator,
-                                           {.threshold = threshold * data.range, .verify = true});
+            const auto result =
+                isosurface(grid, field, data.isovalue, under(indicator, threshold * data.range),
+                           {.verify = true});
             const SurfaceReport report = surface_report(result.surface);
             EXPECT_GT(report.triangles, 0U);
             EXPECT_EQ(report.boundary_edges, result.surface.boundary.size());
@@ -60,7 +61,8 @@ TEST_P(ClosedSurface, CappedEnclosesTheRegionAboveTheIsovalue) {
             // Half a step beside the integers, so that no node belongs to both.
             const double isovalue = sign * (data.isovalue - (data.range > 1 ? 0.25 : 0));
             const LatticeField field(grid, std::span<const float>(data.values));
-            const auto result = isosurface(grid, field, isovalue, {.threshold = 0.01, .cap = true});
+            const auto result =
+                isosurface(grid, field, isovalue, {.threshold = 0.01}, {.cap = true});
             const SurfaceReport report = surface_report(result.surface);
             expect_closed(report);
             EXPECT_TRUE(report.closed());
@@ -102,9 +104,9 @@ TEST(Bound, StoppingNumberInItsPlaceOpensHolesInNoise) {
     ASSERT_EQ(data.name, "noise");
     const LatticeField field(grid, std::span<const float>(data.values));
     const HierarchicalIndicator indicator(grid, field);
-    const auto sound = isosurface(grid, field, data.isovalue, indicator, {});
-    const auto holed = isosurface(grid, field, data.isovalue, Threshold{&indicator, 0},
-                                  StopAsBound{indicator}, {});
+    const auto sound = isosurface(grid, field, data.isovalue, under(indicator, 0));
+    const auto holed = isosurface(grid, field, data.isovalue,
+                                  under(Threshold{&indicator, 0}, StopAsBound{indicator}), {});
     EXPECT_EQ(surface_report(sound.surface).open_edges, 0U);
     EXPECT_LT(holed.surface.simplices.size(), sound.surface.simplices.size());
     EXPECT_GT(surface_report(holed.surface).open_edges, 0U);
@@ -160,10 +162,11 @@ TEST(Saturation, WithoutItAGyroidIsLostWhole) {
     const HierarchicalIndicator indicator(grid, field);
     const OwnOffsets offsets(grid, field, indicator);
     const double threshold = 1e-4;  // the centre of the cube is interpolated to rounding
-    const auto sound = isosurface(grid, field, data.isovalue, indicator, {.threshold = threshold});
+    const auto sound = isosurface(grid, field, data.isovalue, under(indicator, threshold));
     const Threshold unsaturated{&offsets, threshold};
-    const auto lost = isosurface(grid, field, data.isovalue, Unsaturated{unsaturated}, offsets);
-    EXPECT_THROW(isosurface(grid, field, data.isovalue, unsaturated, offsets), InvalidInput);
+    const auto lost =
+        isosurface(grid, field, data.isovalue, under(Unsaturated{unsaturated}, offsets));
+    EXPECT_THROW(isosurface(grid, field, data.isovalue, under(unsaturated, offsets)), InvalidInput);
     EXPECT_GT(sound.surface.simplices.size(), 10000U);
     EXPECT_EQ(lost.surface.simplices.size(), 0U);
 }

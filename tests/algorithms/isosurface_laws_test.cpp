@@ -71,7 +71,7 @@ TEST(ThresholdZero, GivesTheVerticesOfTheFinestGrid) {
             if (data.name == "integer noise" || data.name == "plateaus") continue;  // zero offsets
             SCOPED_TRACE(data.name);
             const LatticeField field(grid, std::span<const float>(data.values));
-            auto result = isosurface(grid, field, data.isovalue, {});
+            auto result = isosurface(grid, field, data.isovalue);
             std::vector<Point> expected = finest_vertices(data, n);
             std::sort(expected.begin(), expected.end());
             std::sort(result.surface.vertices.begin(), result.surface.vertices.end());
@@ -88,8 +88,8 @@ TEST(ThresholdZero, GivesThePointSetOfTheFinestGridWhereOffsetsVanish) {
         SCOPED_TRACE(data.name);
         const LatticeField field(grid, std::span<const float>(data.values));
         const HierarchicalIndicator indicator(grid, field);
-        const auto result = isosurface(grid, field, data.isovalue, indicator, {});
-        const auto finest = isosurface(grid, field, data.isovalue, Exact{}, indicator, {});
+        const auto result = isosurface(grid, field, data.isovalue, under(indicator, 0));
+        const auto finest = isosurface(grid, field, data.isovalue, under(Exact{}, indicator), {});
         const SurfaceReport a = surface_report(result.surface);
         const SurfaceReport b = surface_report(finest.surface);
         // Cuts are kept 2^-20 of an edge away from its ends, so areas agree to about that.
@@ -110,8 +110,8 @@ void expect_error_bounds(const Evaluate& evaluate) {
             const HierarchicalIndicator indicator(grid, field);
             for (const double threshold : {0.3, 0.1, 0.02, 0.005, 0.0}) {
                 SCOPED_TRACE(data.name + " at " + std::to_string(threshold));
-                const auto result = isosurface(grid, field, data.isovalue, indicator,
-                                               {.threshold = threshold * data.range});
+                const auto result = isosurface(grid, field, data.isovalue,
+                                               under(indicator, threshold * data.range));
                 const auto& surface = result.surface;
                 double worst = 0;
                 for (const auto& t : surface.simplices) {
@@ -155,8 +155,9 @@ TEST(Mirror, ReflectsTheSurface) {
         SCOPED_TRACE(data.name);
         const LatticeField field(grid, std::span<const float>(data.values));
         const LatticeField image(mirrored, std::span<const float>(data.values));
-        const auto a = isosurface(grid, field, data.isovalue, {.threshold = 0.02, .cap = true});
-        const auto b = isosurface(mirrored, image, data.isovalue, {.threshold = 0.02, .cap = true});
+        const auto a = isosurface(grid, field, data.isovalue, {.threshold = 0.02}, {.cap = true});
+        const auto b =
+            isosurface(mirrored, image, data.isovalue, {.threshold = 0.02}, {.cap = true});
         ASSERT_EQ(a.surface.vertices.size(), b.surface.vertices.size());
         for (std::size_t i = 0; i < a.surface.vertices.size(); ++i) {
             const Point& p = a.surface.vertices[i];
@@ -214,8 +215,8 @@ TEST(Renumbering, ChangesTheOrderAlone) {
         SCOPED_TRACE(data.name);
         const LatticeField field(grid, std::span<const float>(data.values));
         const RenumberedField same(renumbered, field);
-        auto a = isosurface(grid, field, data.isovalue, {.threshold = 0.03, .cap = true});
-        auto b = isosurface(renumbered, same, data.isovalue, {.threshold = 0.03, .cap = true});
+        auto a = isosurface(grid, field, data.isovalue, {.threshold = 0.03}, {.cap = true});
+        auto b = isosurface(renumbered, same, data.isovalue, {.threshold = 0.03}, {.cap = true});
         const auto triangles = [](const auto& surface) {
             std::vector<std::array<Point, 3>> list;
             for (const auto& t : surface.simplices) {
@@ -245,7 +246,7 @@ SphereMeasure measure_sphere(int n) {
     const std::vector<float> values =
         sample(samples, [](double x, double y, double z) { return -distance_to_centre(x, y, z); });
     const LatticeField field(grid, std::span<const float>(values));
-    const auto result = isosurface(grid, field, -0.4, {});
+    const auto result = isosurface(grid, field, -0.4);
     const SurfaceReport report = surface_report(result.surface);
     EXPECT_TRUE(report.closed());
     EXPECT_EQ(report.euler, 2);
@@ -273,7 +274,8 @@ TEST(Normals, PointDownhillAndAreThoseOfTheSphere) {
         sample(n, [](double x, double y, double z) { return distance_to_centre(x, y, z); });
     const LatticeField field(grid, std::span<const float>(values));
     for (const double threshold : {0.0, 0.01}) {
-        const auto result = isosurface(grid, field, 0.4, {.threshold = threshold, .normals = true});
+        const auto result =
+            isosurface(grid, field, 0.4, {.threshold = threshold}, {.normals = true});
         const auto& surface = result.surface;
         ASSERT_EQ(surface.normals.size(), surface.vertices.size());
         for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
@@ -318,7 +320,7 @@ TEST(Isosurface, OutsideTheRangeIsEmpty) {
     const LatticeBisection<3> grid({.samples = n});
     const SampledField data = sampled_fields(n)[0];
     const LatticeField field(grid, std::span<const float>(data.values));
-    const auto result = isosurface(grid, field, 7.0, {});
+    const auto result = isosurface(grid, field, 7.0);
     EXPECT_TRUE(result.surface.vertices.empty());
     EXPECT_EQ(surface_report(result.surface).components, 0U);
     EXPECT_EQ(result.counts.visited, 0U);
@@ -329,11 +331,11 @@ TEST(Isosurface, RefusesWhatIsNoNumber) {
     const LatticeBisection<3> grid({.samples = n});
     SampledField data = sampled_fields(n)[0];
     const LatticeField field(grid, std::span<const float>(data.values));
-    EXPECT_THROW(isosurface(grid, field, std::nan(""), {}), InvalidInput);
+    EXPECT_THROW(isosurface(grid, field, std::nan("")), InvalidInput);
     EXPECT_THROW(isosurface(grid, field, 0.4, {.threshold = -1}), InvalidInput);
     EXPECT_THROW(isosurface(grid, field, 0.4, {.threshold = std::nan("")}), InvalidInput);
     data.values[100] = std::nanf("");
-    EXPECT_THROW(isosurface(grid, field, 0.4, {}), InvalidInput);
+    EXPECT_THROW(isosurface(grid, field, 0.4), InvalidInput);
 }
 
 TEST(Isosurface, CanBeCancelled) {
@@ -342,7 +344,7 @@ TEST(Isosurface, CanBeCancelled) {
     const SampledField data = sampled_fields(n)[3];
     const LatticeField field(grid, std::span<const float>(data.values));
     int calls = 0;
-    const auto result = isosurface(grid, field, data.isovalue,
+    const auto result = isosurface(grid, field, data.isovalue, {},
                                    {.progress = [&](const auto&) { return ++calls < 3; }});
     EXPECT_TRUE(result.cancelled);
     EXPECT_EQ(calls, 3);

@@ -64,7 +64,7 @@ TYPED_TEST(SeriesOn, StreamsTrianglesWithoutHeap) {
             const double isovalue = c.data.isovalue;
             const Threshold criterion{&indicator, threshold};
             extract_isosurfaces(c.grid, c.field, std::span<const double>(&isovalue, 1),
-                                std::vector{SimplexStream<dim>(see)}, criterion, indicator);
+                                std::vector{SimplexStream<dim>(see)}, under(criterion, indicator));
             EXPECT_GT(simplices, 10U);
             EXPECT_LT(most - before, limit) << "threshold " << threshold;
         }
@@ -74,21 +74,24 @@ TYPED_TEST(SeriesOn, StreamsTrianglesWithoutHeap) {
 TYPED_TEST(SeriesOn, DrawsWhatIsDrawnAlone) {
     const Case<TypeParam> c;
     IsosurfaceSeries series(c.grid, c.field);
+    const Prerolls prerolls(c.grid, c.field);
     std::vector<IsosurfaceOptions> frames(6);
-    frames[1].threshold = 0.05 * c.data.range;
+    std::vector<Projection> projections(6);
+    projections[1].threshold = 0.05 * c.data.range;
     frames[2].cap = true;
     frames[2].normals = true;
-    frames[3].max_triangles = 3000;
+    projections[3].max_triangles = 3000;
     frames[4].reference = true;
     frames[4].elements = false;
     frames[5].progress = [](const TraversalCounts&) { return true; };
     for (int round = 0; round < 2; ++round) {
-        for (const IsosurfaceOptions& options : frames) {
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            const IsosurfaceOptions& options = frames[i];
             for (const double offset : {0.0, 0.02, -0.05}) {
                 const double isovalue = c.data.isovalue + offset * c.data.range;
                 const auto alone =
-                    isosurface(c.grid, c.field, isovalue, series.indicator(), options);
-                expect_same(series.draw(isovalue, options), alone);
+                    isosurface<TypeParam::dimension>(prerolls, isovalue, projections[i], options);
+                expect_same(series.draw(isovalue, projections[i], options), alone);
             }
         }
     }

@@ -23,7 +23,7 @@ TEST(StoredSurfaces, AgreeBetweenFamilies) {
         refine_at_sphere(grid, levels);
         const auto values = sample_nodes(grid, [](const Point& x) { return to_sphere(x, 3); });
         const NodeField field(grid, values);
-        return surface_report(isosurface(grid, field, 0.0, IsosurfaceOptions{}).surface).area;
+        return surface_report(isosurface(grid, field, 0.0).surface).area;
     };
     const double exact = 4 * 3.14159265358979 * 0.35 * 0.35;
     double last = 0;

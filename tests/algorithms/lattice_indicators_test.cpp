@@ -163,12 +163,12 @@ TYPED_TEST(LatticeIndicators, AreNoGreaterThanThoseOfTheSweep) {
                     expect_no_greater(eta, swept, grid.node_count());
                 };
                 expect(mesh_size(grid, spread), mesh_size(unknown, spread));
-                expect(visual_indicator(grid, field, {.spread = spread}),
-                       visual_indicator(unknown, same, {.spread = spread}));
-                expect(numerical_indicator(grid, field, {.spread = spread}),
-                       numerical_indicator(unknown, same, {.spread = spread}));
-                expect(wavelet_indicator(grid, field, {.spread = spread}),
-                       wavelet_indicator(unknown, same, {.spread = spread}));
+                expect(visual_indicator({grid, field}, {.spread = spread}),
+                       visual_indicator({unknown, same}, {.spread = spread}));
+                expect(numerical_indicator({grid, field}, {.spread = spread}),
+                       numerical_indicator({unknown, same}, {.spread = spread}));
+                expect(wavelet_indicator({grid, field}, {.spread = spread}),
+                       wavelet_indicator({unknown, same}, {.spread = spread}));
             }
         }
     }

@@ -72,10 +72,11 @@ void expect_same_slices(const LatticeGeometry<3>& geometry, const std::vector<Sa
             SCOPED_TRACE("threshold " + std::to_string(threshold));
             const Threshold by_offset{&indicator, threshold * range};
             const IsosurfaceOptions options{.elements = true};
-            const Slice plain = slice(unknown, unknown_field, plane, by_offset, indicator, options);
-            expect_same_slice(slice(known, known_field, plane, by_offset, indicator, options),
-                              plain);
-            expect_same_slice(slice(*tables.hierarchy, plane, by_offset, indicator, options),
+            const Slice plain =
+                slice(unknown, unknown_field, plane, under(by_offset, indicator), options);
+            expect_same_slice(
+                slice(known, known_field, plane, under(by_offset, indicator), options), plain);
+            expect_same_slice(slice(*tables.hierarchy, plane, under(by_offset, indicator), options),
                               plain);
         }
     }
@@ -115,12 +116,13 @@ TEST(KnownBisections, AreSlicedByAnyNumberOfThreads) {
     for (const Plane& plane : c.planes) {
         for (const double threshold : c.thresholds) {
             const Threshold criterion{&c.indicator, threshold};
-            const Slice one = slice(c.unknown, c.unknown_field, plane, criterion, c.indicator);
+            const Slice one =
+                slice(c.unknown, c.unknown_field, plane, under(criterion, c.indicator));
             EXPECT_GT(one.surface.simplices.size(), 50U);
             for (const unsigned threads : {1U, 2U, 5U}) {
                 const ThreadExecutor executor(threads);
-                expect_same(one.surface, slice(c.known, c.known_field, plane, criterion,
-                                               c.indicator, {}, executor)
+                expect_same(one.surface, slice(c.known, c.known_field, plane,
+                                               under(criterion, c.indicator), {}, {executor})
                                              .surface);
             }
         }
@@ -137,7 +139,8 @@ TEST(KnownBisections, StreamTheTrianglesOfASlice) {
                 std::vector<std::array<Point, 3>> triangles;
                 std::vector<SimplexStream<3>> sinks;
                 sinks.emplace_back([&](const std::array<Point, 3>& x) { triangles.push_back(x); });
-                extract_slices(grid, field, {{&plane}}, std::move(sinks), criterion, c.indicator);
+                extract_slices({grid, field}, {{&plane}}, std::move(sinks),
+                               under(criterion, c.indicator));
                 return triangles;
             };
             const auto triangles = stream(c.known, c.known_field);
@@ -151,11 +154,12 @@ TEST(KnownBisections, StreamTheTrianglesOfASlice) {
 TEST(KnownBisections, AreSlicedUnderOtherCriteria) {
     const SlicedLattice c;
     const HierarchicalIndicator another(c.known, c.known_field);
-    const SweptIndicator wavelets = wavelet_indicator(c.known, c.known_field);
+    const SweptIndicator wavelets = wavelet_indicator({c.known, c.known_field});
     const auto expect_same_under = [&](const Plane& plane, const Criterion& criterion) {
-        const Slice a = slice(c.known, c.known_field, plane, criterion, c.indicator);
+        const Slice a = slice(c.known, c.known_field, plane, under(criterion, c.indicator));
         EXPECT_GT(a.surface.simplices.size(), 50U);
-        expect_same_slice(a, slice(c.unknown, c.unknown_field, plane, criterion, c.indicator));
+        expect_same_slice(a,
+                          slice(c.unknown, c.unknown_field, plane, under(criterion, c.indicator)));
     };
     for (const Plane& plane : c.planes) {
         for (const double threshold : c.thresholds) {
@@ -171,10 +175,10 @@ TEST(KnownBisections, AreSlicedUnderOtherCriteria) {
 TEST(KnownBisections, KeepTheBudgetOfASlice) {
     const SlicedLattice c;
     for (const Plane& plane : c.planes) {
-        const IsosurfaceOptions options{.max_triangles = 700};
-        const Slice a = slice(c.known, c.known_field, plane, c.indicator, options);
+        const Projection budget{.max_triangles = 700};
+        const Slice a = slice(c.known, c.known_field, plane, budget);
         EXPECT_GT(a.surface.simplices.size(), 100U);
-        expect_same_slice(a, slice(c.unknown, c.unknown_field, plane, c.indicator, options));
+        expect_same_slice(a, slice(c.unknown, c.unknown_field, plane, budget));
     }
 }
 

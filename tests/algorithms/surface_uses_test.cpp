@@ -70,7 +70,7 @@ TYPED_TEST(Uses, MeasuresConvergeWithOrderTwo) {
         auto grid = TypeParam::grids()[0];
         uniform(grid, level * TypeParam::steps);
         const auto field = scalar_and_more(grid);
-        const auto result = isosurface(grid, field, 0.0, {});
+        const auto result = isosurface(grid, field, 0.0);
         expect_closed(result.surface);
         const SurfaceMeasurement m = measure_surface(result.surface);
         ASSERT_EQ(m.components.size(), 1U);
@@ -100,9 +100,8 @@ TYPED_TEST(Uses, AttributesAndReferenceCoordinatesSayWhereTheTrianglesAre) {
         const auto field = scalar_and_more(grid);
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : {0.0, 0.05}) {
-            const auto result =
-                isosurface(grid, field, 0.0, indicator,
-                           {.threshold = threshold, .normals = true, .reference = true});
+            const auto result = isosurface(grid, field, 0.0, under(indicator, threshold),
+                                           {.normals = true, .reference = true});
             const auto& s = result.surface;
             const auto elements = s.elements.template as<typename TypeParam::Grid::Element>();
             ASSERT_GT(s.simplices.size(), 20U);
@@ -160,10 +159,10 @@ TYPED_TEST(Uses, SeveralIsovaluesInOneTraversalAreThoseOfSeveral) {
         const Threshold criterion{&indicator, 0.01};
         const std::array<double, 3> isovalues{-0.1, 0, 0.05};
         const auto together = isosurfaces(grid, field, std::span<const double>(isovalues),
-                                          criterion, indicator, {.cap = true});
+                                          under(criterion, indicator), {.cap = true});
         for (std::size_t i = 0; i < isovalues.size(); ++i) {
             const auto alone =
-                isosurface(grid, field, isovalues[i], criterion, indicator, {.cap = true});
+                isosurface(grid, field, isovalues[i], under(criterion, indicator), {.cap = true});
             EXPECT_EQ(together[i].surface.vertices, alone.surface.vertices);
             EXPECT_EQ(together[i].surface.simplices, alone.surface.simplices);
             EXPECT_EQ(together[i].error_bound, alone.error_bound);
@@ -183,9 +182,10 @@ TYPED_TEST(Uses, StreamsHandOutTheSameTriangles) {
         std::vector<std::array<Point, 3>> triangles;
         const auto keep = [&](const std::array<Point, 3>& x) { triangles.push_back(x); };
         extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1),
-                            std::vector{SimplexStream<3>(keep)}, criterion, indicator,
+                            std::vector{SimplexStream<3>(keep)}, under(criterion, indicator),
                             {.cap = true});
-        const auto result = isosurface(grid, field, isovalue, criterion, indicator, {.cap = true});
+        const auto result =
+            isosurface(grid, field, isovalue, under(criterion, indicator), {.cap = true});
         const auto& s = result.surface;
         ASSERT_EQ(triangles.size(), s.simplices.size());
         for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -204,10 +204,12 @@ TYPED_TEST(Uses, VolumesBetweenIsovaluesAreExactForLinearFunctions) {
     const NodeField<typename TypeParam::Grid, double> field(grid, values);
     const HierarchicalIndicator indicator(grid, field);
     // Cuts are kept 2^-20 of an edge away from its ends.
-    EXPECT_NEAR(volume_between(grid, field, 2.4, 9.0, indicator), 0.6 * 0.6 * 0.6 / 6, 1e-5);
-    EXPECT_NEAR(volume_between(grid, field, 0.6, 2.4, indicator), 1 - 0.6 * 0.6 * 0.6 / 3, 1e-5);
-    EXPECT_NEAR(volume_between(grid, field, -1, 4, indicator), 1, 1e-12);
-    EXPECT_THROW(volume_between(grid, field, 1, 0, indicator), InvalidInput);
+    EXPECT_NEAR(volume_between({grid, field}, 2.4, 9.0, under(indicator, 0)), 0.6 * 0.6 * 0.6 / 6,
+                1e-5);
+    EXPECT_NEAR(volume_between({grid, field}, 0.6, 2.4, under(indicator, 0)),
+                1 - 0.6 * 0.6 * 0.6 / 3, 1e-5);
+    EXPECT_NEAR(volume_between({grid, field}, -1, 4, under(indicator, 0)), 1, 1e-12);
+    EXPECT_THROW(volume_between({grid, field}, 1, 0, under(indicator, 0)), InvalidInput);
 }
 
 /// Derived, then projected: the same surface as that of the derived values themselves.
@@ -249,13 +251,14 @@ TYPED_TEST(Uses, BandsAreClosedAroundTheirVolume) {
     const HierarchicalIndicator indicator(grid, field);
     for (const double threshold : {0.0, 0.02}) {
         const Threshold criterion{&indicator, threshold};
-        const auto band = isoband(grid, field, -0.05, 0.1, criterion, indicator,
+        const auto band = isoband(grid, field, -0.05, 0.1, under(criterion, indicator),
                                   {.normals = true, .reference = true});
         const auto& s = band.surface;
         const auto elements = s.elements.template as<typename TypeParam::Grid::Element>();
         expect_closed(s);
         const SurfaceMeasurement measured = measure_surface(s);
-        const double volume = volume_between(grid, field, -0.05, 0.1, indicator, threshold);
+        const double volume =
+            volume_between({grid, field}, -0.05, 0.1, under(indicator, threshold));
         EXPECT_GT(volume, 0);
         EXPECT_TRUE(measured.total.closed);
         EXPECT_NEAR(measured.total.volume, volume, 1e-12);
@@ -274,8 +277,8 @@ TYPED_TEST(Uses, BandsAreClosedAroundTheirVolume) {
             for (std::size_t i = 0; i < x.size(); ++i) there = there + w[i] * x[i];
             EXPECT_NEAR(norm(there - s.vertices[s.simplices[c / 3][c % 3]]), 0, 1e-6);
         }
-        EXPECT_THROW(isoband(grid, field, 0.1, 0.1, criterion, indicator), InvalidInput);
-        EXPECT_THROW(isoband(grid, field, 0, 0.1, criterion, indicator, {.cap = true}),
+        EXPECT_THROW(isoband(grid, field, 0.1, 0.1, under(criterion, indicator)), InvalidInput);
+        EXPECT_THROW(isoband(grid, field, 0, 0.1, under(criterion, indicator), {.cap = true}),
                      InvalidInput);
     }
 }
@@ -284,13 +287,14 @@ template <class Grid, class Field>
 void expect_best_threshold(const Grid& grid, const Field& field, double isovalue) {
     const HierarchicalIndicator indicator(grid, field);
     const auto triangles = [&](double threshold) {
-        return isosurface(grid, field, isovalue, indicator, {.threshold = threshold})
+        return isosurface(grid, field, isovalue, under(indicator, threshold))
             .surface.simplices.size();
     };
     const std::size_t finest = triangles(0);
     for (const std::size_t budget : {finest / 40, finest / 7, finest / 2, finest, 2 * finest}) {
         SCOPED_TRACE(budget);
-        const TriangleBudget best = find_threshold(grid, field, isovalue, indicator, budget);
+        const TriangleBudget best =
+            find_threshold<3>(erase(grid, field), isovalue, indicator, budget);
         EXPECT_LE(best.triangles, budget);
         EXPECT_EQ(triangles(best.threshold), best.triangles);
         EXPECT_LE(best.extracted, 20 * budget);
@@ -302,11 +306,12 @@ void expect_best_threshold(const Grid& grid, const Field& field, double isovalue
         } else {
             EXPECT_GE(budget, finest);
         }
-        const auto result = isosurface(grid, field, isovalue, indicator, {.max_triangles = budget});
+        const auto result = isosurface(grid, field, isovalue, {.max_triangles = budget});
         EXPECT_EQ(result.surface.simplices.size(), best.triangles);
     }
-    EXPECT_THROW(find_threshold(grid, field, indicator.least() - 1, indicator, 1, {.cap = true}),
-                 InvalidInput);
+    EXPECT_THROW(
+        find_threshold<3>(erase(grid, field), indicator.least() - 1, indicator, 1, {.cap = true}),
+        InvalidInput);
 }
 
 TEST(TriangleBudgets, AreKeptByTheLeastThreshold) {
@@ -349,12 +354,12 @@ TEST(Regions, LeaveTheRestOfABudgetToTheOutside) {
     const auto criterion_at = [&](double threshold) {
         return fine_inside(region, indicator, threshold, 0);
     };
-    const auto fine = isosurface(grid, field, data.isovalue, indicator, {});
+    const auto fine = isosurface(grid, field, data.isovalue, under(indicator, 0));
     const std::size_t budget = fine.surface.simplices.size() * 2 / 3;
     const TriangleBudget best =
-        find_threshold(grid, field, data.isovalue, criterion_at, indicator, budget);
+        find_threshold<3>(erase(grid, field), data.isovalue, criterion_at, indicator, budget);
     const auto mixed =
-        isosurface(grid, field, data.isovalue, criterion_at(best.threshold), indicator);
+        isosurface(grid, field, data.isovalue, under(criterion_at(best.threshold), indicator));
     EXPECT_EQ(mixed.surface.simplices.size(), best.triangles);
     EXPECT_LE(best.triangles, budget);
     expect_closed(mixed.surface);
@@ -376,9 +381,10 @@ TYPED_TEST(Uses, RegionsHaveTheirOwnThreshold) {
         const HierarchicalIndicator indicator(grid, field);
         const auto criterion = fine_inside(region, indicator, 0.5, 0.0);
         ASSERT_TRUE(criterion.saturated());
-        const auto mixed = isosurface(grid, field, 0.0, criterion, indicator, {.verify = true});
-        const auto fine = isosurface(grid, field, 0.0, indicator, {});
-        const auto coarse = isosurface(grid, field, 0.0, indicator, {.threshold = 0.5});
+        const auto mixed =
+            isosurface(grid, field, 0.0, under(criterion, indicator), {.verify = true});
+        const auto fine = isosurface(grid, field, 0.0, under(indicator, 0));
+        const auto coarse = isosurface(grid, field, 0.0, under(indicator, 0.5));
         expect_closed(mixed.surface);
         // In the region every vertex of the fine surface is there.
         std::set<Point> vertices(mixed.surface.vertices.begin(), mixed.surface.vertices.end());

@@ -31,17 +31,18 @@ void expect_same_from_threads(const Grid& grid, const Field& field,
     const IsosurfaceOptions everything{
         .normals = Grid::dimension == 3, .cap = true, .reference = true, .verify = true};
     for (const IsosurfaceOptions& options : {everything, IsosurfaceOptions{}}) {
-        const auto alone = isosurfaces(grid, field, isovalues, criterion, indicator, options);
+        const auto alone =
+            isosurfaces(grid, field, isovalues, under(criterion, indicator), options);
         for (const std::size_t threads : {2U, 3U}) {
-            const auto together = isosurfaces(grid, field, isovalues, criterion, indicator, options,
-                                              ThreadExecutor(threads));
+            const auto together = isosurfaces(grid, field, isovalues, under(criterion, indicator),
+                                              options, {ThreadExecutor(threads)});
             ASSERT_EQ(together.size(), alone.size());
             for (std::size_t i = 0; i < alone.size(); ++i) expect_same(alone[i], together[i]);
         }
         const auto triangles = [&](const Executor& executor) {
             const auto at = [&](double) { return Threshold(criterion); };
-            return find_threshold(grid, field, isovalues[0], at, indicator, 1000000, options,
-                                  executor)
+            return find_threshold<Grid::dimension>(erase(grid, field), isovalues[0], at, indicator,
+                                                   1000000, options, executor)
                 .triangles;
         };
         EXPECT_EQ(triangles(SequentialExecutor{}), alone[0].surface.simplices.size());
@@ -156,8 +157,8 @@ TEST(ThreadsOnStreams, HandOutTheSameTrianglesInTheSameOrder) {
         std::vector<std::array<Point, 3>> all;
         const auto keep = [&](const std::array<Point, 3>& x) { all.push_back(x); };
         extract_isosurfaces(s.grid, s.field, std::span<const double>(&s.data.isovalue, 1),
-                            std::vector{SimplexStream<3>(keep)}, Threshold{&s.indicator, 0.01},
-                            s.indicator, {}, executor);
+                            std::vector{SimplexStream<3>(keep)},
+                            under(Threshold{&s.indicator, 0.01}, s.indicator), {}, {executor});
         return all;
     };
     const auto alone = triangles(SequentialExecutor{});
@@ -177,9 +178,9 @@ void expect_same_in_parts(const Grid& grid, const std::vector<SampledField>& fie
             std::vector<std::vector<typename Soup::Simplex>> all(2);
             std::vector<Soup> sinks;
             for (auto& soup : all) sinks.emplace_back(soup);
-            const auto reports = extract_isosurfaces(grid, field, isovalues, std::move(sinks),
-                                                     Threshold{&indicator, 0.01 * data.range},
-                                                     indicator, {}, executor);
+            const auto reports = extract_isosurfaces(
+                grid, field, isovalues, std::move(sinks),
+                under(Threshold{&indicator, 0.01 * data.range}, indicator), {}, {executor});
             EXPECT_EQ(reports.size(), 2U);
             return all;
         };
@@ -250,7 +251,7 @@ void expect_same_elements_in_soups(const SampledField& data, const Samples& n) {
     for (const bool reference : {false, true}) {
         const IsosurfaceOptions options{.reference = reference};
         const auto s =
-            isosurface(grid, field, data.isovalue, criterion, indicator, options).surface;
+            isosurface(grid, field, data.isovalue, under(criterion, indicator), options).surface;
         EXPECT_GT(s.simplices.size(), 100U);
         std::vector<std::array<Point, 3>> corners;
         for (const auto& [a, b, c] : s.simplices) {
@@ -259,7 +260,7 @@ void expect_same_elements_in_soups(const SampledField& data, const Samples& n) {
         const auto expect_same_with = [&](const Executor& executor) {
             SoupOfElements soup;
             extract_isosurfaces(grid, field, isovalue, std::vector{SoupWithElements(soup)},
-                                criterion, indicator, options, executor);
+                                under(criterion, indicator), options, {executor});
             EXPECT_EQ(soup.triangles, corners);
             EXPECT_EQ(soup.rest.element_of, s.element_of);
             expect_same_bits(soup.rest.reference, s.reference, "reference");
@@ -291,13 +292,13 @@ TEST(ThreadsOnSoups, KeepWhatAStreamHandsOut) {
         streamed.push_back(
             {x[0][0], x[0][1], x[0][2], x[1][0], x[1][1], x[1][2], x[2][0], x[2][1], x[2][2]});
     };
-    extract_isosurfaces(s.grid, s.field, isovalue, std::vector{SimplexStream<3>(keep)}, criterion,
-                        s.indicator, {});
+    extract_isosurfaces(s.grid, s.field, isovalue, std::vector{SimplexStream<3>(keep)},
+                        under(criterion, s.indicator), {});
     std::vector<SimplexSoup<3, double>::Simplex> soup;
     std::vector<SimplexSoup<3, double>> sinks;
     sinks.emplace_back(soup);
-    extract_isosurfaces(s.grid, s.field, isovalue, std::move(sinks), criterion, s.indicator, {},
-                        ThreadExecutor(2));
+    extract_isosurfaces(s.grid, s.field, isovalue, std::move(sinks), under(criterion, s.indicator),
+                        {}, {ThreadExecutor(2)});
     EXPECT_GT(soup.size(), 100U);
     EXPECT_EQ(soup, streamed);
 }
@@ -352,19 +353,20 @@ void expect_same_in_sinks(const Grid& grid, const SampledField& data) {
     const std::span<const double> isovalue(&data.isovalue, 1);
     const IsosurfaceOptions everything{.normals = true, .cap = true, .reference = true};
     for (const IsosurfaceOptions& options : {everything, IsosurfaceOptions{}}) {
-        const auto alone = isosurface(grid, field, data.isovalue, criterion, indicator, options);
+        const auto alone =
+            isosurface(grid, field, data.isovalue, under(criterion, indicator), options);
         EXPECT_GT(alone.surface.simplices.size(), 100U);
         const auto expect_same_with = [&](const Executor& executor) {
             Surface<3> surface;
             auto results =
                 extract_isosurfaces(grid, field, isovalue, std::vector{CollectingSink(surface)},
-                                    criterion, indicator, options, executor);
+                                    under(criterion, indicator), options, {executor});
             results[0].surface = std::move(surface);
             expect_same(alone, results[0]);
 
             Surface<3> plain;
-            extract_isosurfaces(grid, field, isovalue, std::vector{PlainSink(plain)}, criterion,
-                                indicator, options, executor);
+            extract_isosurfaces(grid, field, isovalue, std::vector{PlainSink(plain)},
+                                under(criterion, indicator), options, {executor});
             EXPECT_EQ(plain.vertices, alone.surface.vertices);
             EXPECT_EQ(plain.simplices, alone.surface.simplices);
             EXPECT_EQ(plain.reference.size(), alone.surface.reference.size());
@@ -385,9 +387,9 @@ TEST(ThreadsOnMeshSinks, FillThemTheSame) {
 
 TEST(ThreadsOnBudgets, FindTheSameThreshold) {
     const SphereIn s;
-    const auto one = find_threshold(s.grid, s.field, s.data.isovalue, s.indicator, 1000);
-    const auto two =
-        find_threshold(s.grid, s.field, s.data.isovalue, s.indicator, 1000, {}, ThreadExecutor(2));
+    const auto one = find_threshold<3>(erase(s.grid, s.field), s.data.isovalue, s.indicator, 1000);
+    const auto two = find_threshold<3>(erase(s.grid, s.field), s.data.isovalue, s.indicator, 1000,
+                                       {}, ThreadExecutor(2));
     EXPECT_EQ(one.threshold, two.threshold);
     EXPECT_EQ(one.triangles, two.triangles);
 }
@@ -408,16 +410,16 @@ private:
 TEST(ThreadsThatStop, CancelOrPassOnWhatWasThrown) {
     const SphereIn s;
     int asked = 0;
-    const auto part = isosurface(s.grid, s.field, s.data.isovalue, s.indicator,
+    const auto part = isosurface(s.grid, s.field, s.data.isovalue, under(s.indicator, 0),
                                  {.progress = [&](const TraversalCounts&) { return ++asked < 3; }},
-                                 ThreadExecutor(2));
+                                 {ThreadExecutor(2)});
     EXPECT_TRUE(part.cancelled);
-    const auto whole = isosurface(s.grid, s.field, s.data.isovalue, s.indicator, {});
+    const auto whole = isosurface(s.grid, s.field, s.data.isovalue, under(s.indicator, 0));
     EXPECT_GT(part.surface.simplices.size(), 0U);
     EXPECT_LT(part.surface.simplices.size(), whole.surface.simplices.size());
 
-    EXPECT_THROW(isosurface(s.grid, s.field, s.data.isovalue, ThrowsBelow{11}, s.indicator, {},
-                            ThreadExecutor(2)),
+    EXPECT_THROW(isosurface(s.grid, s.field, s.data.isovalue, under(ThrowsBelow{11}, s.indicator),
+                            {}, {ThreadExecutor(2)}),
                  GridError);
 }
 

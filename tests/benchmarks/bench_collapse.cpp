@@ -178,14 +178,16 @@ void compare(const Data& data, int n, int steps) {
                                                          nestgrid::NodeError::deviation);
         // As the program does.
         const nestgrid::SweptIndicator cuts = nestgrid::cut_deviations(
-            grid, field, std::span<const double>(&data.isovalue, 1), deviations);
-        surface =
-            nestgrid::isosurface(grid, field, data.isovalue,
-                                 nestgrid::Threshold(&cuts, nestgrid::collapse_start * data.error),
-                                 deviations, {.elements = false})
-                .surface;
+            {grid, field}, std::span<const double>(&data.isovalue, 1), deviations);
+        surface = nestgrid::isosurface(
+                      grid, field, data.isovalue,
+                      under(nestgrid::Threshold(&cuts, nestgrid::collapse_start * data.error),
+                            deviations),
+                      {.elements = false})
+                      .surface;
         begun = surface.simplices.size();
-        result = collapse(surface, grid, field, data.isovalue, deviations, {.error = data.error});
+        result =
+            collapse(surface, erase(grid, field), data.isovalue, deviations, {.error = data.error});
         ours = static_cast<double>(surface.simplices.size());
     });
     contest.add("contour_and_decimate", [&] {
@@ -196,7 +198,8 @@ void compare(const Data& data, int n, int steps) {
 
     const nestgrid::HierarchicalIndicator offsets(grid, field);
     const auto exact = to_vtk(
-        nestgrid::isosurface(grid, field, data.isovalue, offsets, {.elements = false}).surface);
+        nestgrid::isosurface(grid, field, data.isovalue, under(offsets, 0), {.elements = false})
+            .surface);
     const double our_distance = distance(to_vtk(surface), exact);
     const double its_distance = distance(decimation->GetOutput(), merged->GetOutput());
     double too_few = ours / 4;

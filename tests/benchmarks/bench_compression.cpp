@@ -87,11 +87,11 @@ void measure(const Volume& volume, std::size_t rounds) {
     std::size_t triangles = 0;
     Contest contest(rounds);
     contest.add("stored", [&] {
-        triangles =
-            isosurface(grid, field, volume.isovalue, criterion, indicator).surface.simplices.size();
+        triangles = isosurface(grid, field, volume.isovalue, under(criterion, indicator))
+                        .surface.simplices.size();
     });
     contest.add("decoded",
-                [&] { isosurface(grid, decoded, volume.isovalue, criterion, indicator); });
+                [&] { isosurface(grid, decoded, volume.isovalue, under(criterion, indicator)); });
     contest.add("preroll_of_decoded", [&] { HierarchicalIndicator of_decoded(grid, decoded); });
     contest.run();
     print("triangles", static_cast<double>(triangles));

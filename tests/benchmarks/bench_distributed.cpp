@@ -77,8 +77,7 @@ void measure(const std::string& name, Grid grid, std::size_t leaves, int ranks) 
         const HierarchicalIndicator indicator(distributed, field);
         meter.take("3 indicator");
         for (const char* step : {"4 surface", "5 next isovalue"}) {
-            isosurface(distributed, field, step[0] == '4' ? 0.0 : 0.01, indicator,
-                       {.threshold = 1e-3});
+            isosurface(distributed, field, step[0] == '4' ? 0.0 : 0.01, under(indicator, 1e-3));
             meter.take(step);
         }
         busiest.take("shared nodes", distributed.shared_nodes()->count());

@@ -61,7 +61,7 @@ void measure_family(const std::string& name, Grid grid, int levels, std::size_t 
     TraversalCounts counts;
     Contest contest(rounds);
     contest.add("preroll", [&] { HierarchicalIndicator(grid, field); });
-    contest.add("draw", [&] { counts = series.draw(0, {.elements = false}).counts; });
+    contest.add("draw", [&] { counts = series.draw(0, {}, {.elements = false}).counts; });
     contest.run();
     Contest::print_figure(name + "_leaves", static_cast<double>(grid.leaf_count()));
     Contest::print_figure(name + "_visited", static_cast<double>(counts.visited));

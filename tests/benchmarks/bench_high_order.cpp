@@ -211,7 +211,7 @@ double run(unsigned degree, bool quick) {
         const std::string at = name + "_tolerance_" + std::to_string(++count);
         const double start = seconds();
         const VirtualRefinement fine(data, {.tolerance = tolerance});
-        const auto result = isosurface<3>(fine, isovalue, fine.criterion(), fine.bounds());
+        const auto result = isosurface<3>(fine, isovalue, under(fine.criterion(), fine.bounds()));
         print(at + "_seconds", seconds() - start);
         const auto& surface = result.surface;
         const double error = measured(problem, surface.simplices.size(), [&](std::size_t t, int k) {

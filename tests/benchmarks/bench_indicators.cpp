@@ -72,7 +72,7 @@ void measure(const std::string& name, const Grid& grid, const Field& field, doub
                               contest.time(other) / contest.time("offset"));
     }
     const auto print_visited = [&](const char* indicator, const char* at, const Criterion& s) {
-        const auto result = isosurface<3>(h, isovalue, s, offsets, {.elements = false});
+        const auto result = isosurface<3>(h, isovalue, under(s, offsets), {.elements = false});
         Contest::print_figure(name + "_" + indicator + "_" + at + "_visited",
                               static_cast<double>(result.counts.visited));
     };

@@ -74,18 +74,21 @@ void compare(std::size_t rounds) {
     on_image.add("handwritten", [&] { bucky.handwritten(0); });
     on_image.add("soup", [&] { triangles = bucky.draw_soup(bucky.grid, bucky.field, 0); });
     on_image.add("indexed", [&] {
-        isosurface(bucky.grid, bucky.field, double{bucky_isovalue}, bucky.indicator, indexed);
+        isosurface(bucky.grid, bucky.field, double{bucky_isovalue}, under(bucky.indicator, 0),
+                   indexed);
     });
     nestgrid::IsosurfaceSeries series(bucky.grid, bucky.field);
-    on_image.add("indexed_again", [&] { series.draw(double{bucky_isovalue}, indexed); });
+    on_image.add("indexed_again", [&] { series.draw(double{bucky_isovalue}, {}, indexed); });
     BuckySamples padded(n - 1);
     on_image.add("padded_preroll", [&] { HierarchicalIndicator(padded.grid, padded.field); });
     on_image.add("padded_soup", [&] { padded.draw_soup(padded.grid, padded.field, 0); });
     on_image.add("padded_indexed", [&] {
-        isosurface(padded.grid, padded.field, double{bucky_isovalue}, padded.indicator, indexed);
+        isosurface(padded.grid, padded.field, double{bucky_isovalue}, under(padded.indicator, 0),
+                   indexed);
     });
     on_image.add("hexahedra_indexed", [&] {
-        isosurface(octree, octree_field, double{bucky_isovalue}, octree_indicator, indexed);
+        isosurface(octree, octree_field, double{bucky_isovalue}, under(octree_indicator, 0),
+                   indexed);
     });
     on_image.add("flying_edges", [&] {
         flying_edges_triangles = contour(flying_edges.Get(), double{bucky_isovalue});
@@ -140,7 +143,7 @@ void compare(std::size_t rounds) {
         const auto name = [](double radius) { return "small_" + std::to_string(radius); };
         const auto draw = [&](double radius) {
             return [&, radius] {
-                counts = isosurface(bucky.grid, field, radius, indicator, indexed).counts;
+                counts = isosurface(bucky.grid, field, radius, under(indicator, 0), indexed).counts;
             };
         };
         for (const double radius : radii) small.add(name(radius), draw(radius));
@@ -192,7 +195,8 @@ void compare(std::size_t rounds) {
     tree_making.print_times();
     Contest unstructured(std::max<std::size_t>(3, rounds / 3));
     unstructured.add("ours", [&] {
-        isosurface(bucky.grid, bucky.field, double{bucky_isovalue}, bucky.indicator, indexed);
+        isosurface(bucky.grid, bucky.field, double{bucky_isovalue}, under(bucky.indicator, 0),
+                   indexed);
     });
     std::size_t linear_triangles = 0;
     unstructured.add("contour3dlineargrid",

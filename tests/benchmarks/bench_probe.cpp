@@ -30,7 +30,7 @@ void measure(const std::string& grid_name, const Grid& grid, const Field& field,
     TraversalCounts counts;
     Contest contest(rounds);
     contest.add("random", [&] { counts = probe(grid, field, points).counts; });
-    contest.add("random_at_0.02", [&] { probe(grid, field, points, criterion, indicator); });
+    contest.add("random_at_0.02", [&] { probe(grid, field, points, under(criterion, indicator)); });
     contest.add("line", [&] { probe_line(grid, field, {0, 0, 0}, end, count); });
     contest.add("one", [&] { probe_point(grid, field, points[0]); });
     contest.run();

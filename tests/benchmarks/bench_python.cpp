@@ -38,8 +38,8 @@ int main(int argc, char** argv) {
             const std::clock_t start = std::clock();
             const nestgrid::LatticeBisection<3> grid({.samples = {n, n, n}});
             const nestgrid::LatticeField field(grid, std::span<const float>(samples));
-            const auto result = nestgrid::isosurface(
-                grid, field, 0.1, {.threshold = threshold, .normals = true, .elements = false});
+            const auto result = nestgrid::isosurface(grid, field, 0.1, {.threshold = threshold},
+                                                     {.normals = true, .elements = false});
             least =
                 std::min(least, 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
             triangles = result.surface.simplices.size();

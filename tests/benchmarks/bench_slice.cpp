@@ -72,7 +72,7 @@ void measure_growth(const std::vector<int>& sizes, std::size_t rounds) {
         for (const NamedPlane& plane : planes_of(n)) {
             Slice result;
             Contest contest(rounds, Clock::processor);
-            contest.add("slice", [&] { result = slice(grid, field, plane.ours(), indexed); });
+            contest.add("slice", [&] { result = slice(grid, field, plane.ours(), {}, indexed); });
             contest.run();
             const auto now = static_cast<double>(result.counts.visited);
             print(plane.name + "_visited" + size, now);
@@ -144,18 +144,16 @@ public:
         : grid_{&grid}, field_{&field}, indicator_{&indicator} {}
 
     Slice at(const NamedPlane& plane, double threshold) const {
-        IsosurfaceOptions options = indexed;
-        options.threshold = threshold;
-        if (threshold == 0) return slice(*grid_, *field_, plane.ours(), options);
-        return slice(*grid_, *field_, plane.ours(), *indicator_, options);
+        const Projection projection = threshold == 0 ? Projection{} : under(*indicator_, threshold);
+        return slice(*grid_, *field_, plane.ours(), projection, indexed);
     }
     /// Hands the triangles to a function, and keeps none.
     std::size_t stream(const NamedPlane& plane) const {
         std::size_t count = 0;
         const SimplexStream<3> sink([&](const auto&) { ++count; });
         const Plane function = plane.ours();
-        extract_slices(*grid_, *field_, {{&function}}, std::vector{sink}, Exact{}, *indicator_,
-                       indexed);
+        extract_slices({*grid_, *field_}, {{&function}}, std::vector{sink},
+                       under(Exact{}, *indicator_), indexed);
         return count;
     }
     void add_to(Contest& contest, const NamedPlane& plane) const {

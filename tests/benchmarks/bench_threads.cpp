@@ -24,7 +24,8 @@ void fill(BuckySamples& bucky, float threshold, std::vector<Soup::Simplex>& soup
     sinks.emplace_back(soup);
     const nestgrid::Threshold criterion{&bucky.indicator, threshold};
     nestgrid::extract_isosurfaces(bucky.grid, bucky.field, std::span<const double>(&isovalue, 1),
-                                  std::move(sinks), criterion, bucky.indicator, {}, executor);
+                                  std::move(sinks), under(criterion, bucky.indicator), {},
+                                  {executor});
 }
 
 /// Of an octree refined at a sphere.
@@ -53,7 +54,8 @@ void compare(int n, int levels, std::size_t rounds) {
     nestgrid::IsosurfaceSeries one_series(bucky.grid, bucky.field);
     nestgrid::IsosurfaceSeries two_series(bucky.grid, bucky.field);
     for (const float threshold : bucky_thresholds) {
-        const nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
+        const nestgrid::Projection projection{.threshold = threshold};
+        const nestgrid::IsosurfaceOptions options{.elements = false};
         Contest contest(rounds);
         contest.add("soup_one",
                     [&] { fill(bucky, threshold, soup, nestgrid::SequentialExecutor{}); });
@@ -61,8 +63,10 @@ void compare(int n, int levels, std::size_t rounds) {
         contest.add("stream_one", [&] { bucky.draw_soup(bucky.grid, bucky.field, threshold); });
         contest.add("stream_two",
                     [&] { bucky.draw_soup(bucky.grid, bucky.field, threshold, nullptr, two); });
-        contest.add("indexed_one", [&] { one_series.draw(double{bucky_isovalue}, options); });
-        contest.add("indexed_two", [&] { two_series.draw(double{bucky_isovalue}, options, two); });
+        contest.add("indexed_one",
+                    [&] { one_series.draw(double{bucky_isovalue}, projection, options); });
+        contest.add("indexed_two",
+                    [&] { two_series.draw(double{bucky_isovalue}, projection, options, two); });
         contest.run();
         for (const std::string name : {"soup", "stream", "indexed"}) {
             Contest::print_figure(at_threshold(name + "_one_ms", threshold),

@@ -120,9 +120,8 @@ void run_ours(const char* mesh, const char* name, const Grid& grid,
     const double range = indicator->greatest() - indicator->least();
     for (const double threshold : {0.0, 0.02 * range}) {
         Surface<3> surface;
-        const double seconds = time_of([&] {
-            surface = isosurface(grid, field, 0.0, *indicator, {.threshold = threshold}).surface;
-        });
+        const double seconds = time_of(
+            [&] { surface = isosurface(grid, field, 0.0, under(*indicator, threshold)).surface; });
         Triangles triangles;
         for (const auto& t : surface.simplices) triangles.push_back({t[0], t[1], t[2]});
         print(mesh, name, threshold == 0 ? "nestgrid" : "nestgrid, 2 %",

@@ -98,8 +98,8 @@ struct BuckySamples {
         Triangle* to = soup.data();
         const nestgrid::Threshold criterion{&by, threshold};
         const auto result = nestgrid::extract_isosurfaces<3>(
-            of, std::span<const double>(&isovalue, 1), std::vector{TriangleWriter(to)}, criterion,
-            by, {}, executor);
+            of, std::span<const double>(&isovalue, 1), std::vector{TriangleWriter(to)},
+            under(criterion, by), {}, {executor});
         if (counts != nullptr) *counts = result.front().counts;
         return static_cast<std::size_t>(to - soup.data());
     }

@@ -30,13 +30,14 @@ void time_isosurfaces(const Grid& grid, const Field& field, double threshold,
                       Clock::time_point start, Run& run,
                       const nestgrid::Executor& executor = nestgrid::SequentialExecutor{}) {
     nestgrid::IsosurfaceSeries series(grid, field, executor);
-    const nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
-    const auto& result = series.draw(0.0, options, executor);
+    const nestgrid::Projection projection{.threshold = threshold};
+    const nestgrid::IsosurfaceOptions options{.elements = false};
+    const auto& result = series.draw(0.0, projection, options, executor);
     run.first = seconds_since(start);
     run.triangles = static_cast<double>(result.surface.simplices.size());
     run.visited = static_cast<double>(result.counts.visited);
     const auto again = Clock::now();
-    series.draw(1e-3, options, executor);
+    series.draw(1e-3, projection, options, executor);
     run.next = seconds_since(again);
 }
 

@@ -270,9 +270,9 @@ private:
 
     nestgrid::Slice ours(const NamedPlane& at, double threshold, bool bounded = true) const {
         const nestgrid::Plane plane(at.through, at.normal);
-        nestgrid::IsosurfaceOptions options{.threshold = threshold, .elements = false};
+        nestgrid::IsosurfaceOptions options{.elements = false};
         if (bounded) options.position_bounds = &*bounds_;
-        return slice(*hierarchy_, plane, *indicator_, options);
+        return slice(*hierarchy_, plane, under(*indicator_, threshold), options);
     }
 
     template <class Filter>

@@ -46,7 +46,7 @@ struct DrawnWorld {
     Isosurface<dim> surface(double isovalue, const VirtualOptions& at,
                             const IsosurfaceOptions& options = {}) const {
         const VirtualRefinement fine(data, at);
-        return isosurface<dim>(fine, isovalue, fine.criterion(), fine.bounds(), options);
+        return isosurface<dim>(fine, isovalue, under(fine.criterion(), fine.bounds()), options);
     }
 };
 

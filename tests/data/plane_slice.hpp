@@ -13,7 +13,7 @@ template <class Grid, class Field>
 Surface<3> plane_slice(const Grid& grid, const Field& field, const Point& normal, double offset,
                        const Criterion& criterion, const Bounds& bounds) {
     const Plane plane(offset / dot(normal, normal) * normal, normal);
-    return slice(grid, field, plane, criterion, bounds, {.verify = true}).surface;
+    return slice(grid, field, plane, under(criterion, bounds), {.verify = true}).surface;
 }
 
 }  // namespace nestgrid_test

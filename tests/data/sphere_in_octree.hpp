@@ -19,9 +19,9 @@ Isosurface<3> pour_sphere(Sink sink) {
     const Threshold criterion{&indicator, 0.01};
     const double isovalue = 0;
     extract_isosurfaces(grid, field, std::span<const double>(&isovalue, 1),
-                        std::vector<Sink>{std::move(sink)}, criterion, indicator,
+                        std::vector<Sink>{std::move(sink)}, under(criterion, indicator),
                         {.normals = true});
-    return isosurface(grid, field, isovalue, criterion, indicator, {.normals = true});
+    return isosurface(grid, field, isovalue, under(criterion, indicator), {.normals = true});
 }
 
 }  // namespace nestgrid_test

@@ -194,7 +194,7 @@ auto failing(int (*)(Args...)) -> int (*)(Args...) {
 template <class Real>
 std::string told(const nestgrid_grid& grid, const nestgrid_field& field, double isovalue) {
     return refusal<GridError>([&] {
-        (void)isosurface<3>(*open_table<Real>(grid, field), isovalue,
+        (void)isosurface<3>(*open_table<Real>(grid, field), isovalue, {},
                             {.normals = true, .cap = true});
     });
 }

@@ -92,9 +92,8 @@ TEST(Archetype, WorksWithEveryAlgorithm) {
     const HierarchicalIndicator indicator(grid, field);
     EXPECT_EQ(indicator.node_count(), 4U);
     EXPECT_EQ(indicator.greatest(), 4);
-    EXPECT_EQ(isosurface(grid, field, 3.0, indicator, {}).surface.simplices.size(), 2U);
-    EXPECT_EQ(isosurface(grid, field, 3.0, indicator, {.threshold = 3}).surface.simplices.size(),
-              0U);
+    EXPECT_EQ(isosurface(grid, field, 3.0, under(indicator, 0)).surface.simplices.size(), 2U);
+    EXPECT_EQ(isosurface(grid, field, 3.0, under(indicator, 3)).surface.simplices.size(), 0U);
 }
 
 TEST(Identity, GivesTheSameSurfaceFromRequiredOperationsAlone) {
@@ -106,9 +105,11 @@ TEST(Identity, GivesTheSameSurfaceFromRequiredOperationsAlone) {
         const IdentityGrid identity(grid);
         const IdentityField<LatticeBisection<3>, decltype(field)> same(identity, field);
         for (const double threshold : {0.0, 0.05}) {
-            const IsosurfaceOptions options{.threshold = threshold, .cap = true};
-            const auto a = isosurface(grid, field, data.isovalue, options);
-            const auto b = isosurface(identity, same, data.isovalue, options);
+            const IsosurfaceOptions options{.cap = true};
+            const auto a =
+                isosurface(grid, field, data.isovalue, {.threshold = threshold}, options);
+            const auto b =
+                isosurface(identity, same, data.isovalue, {.threshold = threshold}, options);
             EXPECT_EQ(a.surface.vertices, b.surface.vertices);
             EXPECT_EQ(a.surface.simplices, b.surface.simplices);
             EXPECT_EQ(a.surface.boundary, b.surface.boundary);

@@ -43,10 +43,11 @@ void expect_same(const A& a, const B& b) {
 
 template <class Grid, class Field>
 void expect_same_behind_tables(const Grid& grid, const Field& field, double isovalue,
-                               const IsosurfaceOptions& options) {
+                               const Projection& projection,
+                               const IsosurfaceOptions& options = {}) {
     const BehindTables tables(grid, field);
-    expect_same(isosurface(grid, field, isovalue, options),
-                isosurface<Grid::dimension>(*tables.hierarchy, isovalue, options));
+    expect_same(isosurface(grid, field, isovalue, projection, options),
+                isosurface<Grid::dimension>(*tables.hierarchy, isovalue, projection, options));
     const nestgrid_field field_table = field_in_c(grid, field);
     std::array<char, 300> message{};
     const int verdict = nestgrid_check_grid(&tables.table.table, &field_table, message.data(), 300);
@@ -71,12 +72,12 @@ TEST(Tables, GiveTheSameSurfaceOnLattices) {
         const SampledField data = sampled_fields(n)[0];
         const LatticeField field(grid, std::span<const float>(data.values));
         for (const double threshold : {0.0, 0.05}) {
-            expect_same_behind_tables(grid, field, data.isovalue,
-                                      {.threshold = threshold, .normals = true, .cap = true});
+            expect_same_behind_tables(grid, field, data.isovalue, {.threshold = threshold},
+                                      {.normals = true, .cap = true});
         }
         const auto bytes = rounded<std::uint8_t>(data.values, 40);
         const LatticeField coarse(grid, std::span<const std::uint8_t>(bytes));
-        expect_same_behind_tables(grid, coarse, 15, {.cap = true});
+        expect_same_behind_tables(grid, coarse, 15, {}, {.cap = true});
         const auto words = rounded<std::int32_t>(data.values, 1000);
         const LatticeField whole(grid, std::span<const std::int32_t>(words));
         expect_same_behind_tables(grid, whole, 370, {.threshold = 50});
@@ -91,8 +92,8 @@ TEST(Tables, GiveTheSameLinesOnImages) {
     }
     const LatticeField field(image, std::span<const double>(values));
     for (const double threshold : {0.0, 0.1}) {
-        expect_same_behind_tables(image, field, 11.5,
-                                  {.threshold = threshold, .normals = true, .cap = true});
+        expect_same_behind_tables(image, field, 11.5, {.threshold = threshold},
+                                  {.normals = true, .cap = true});
     }
 }
 
@@ -103,8 +104,8 @@ TEST(Tables, GiveTheSameSurfaceFromTheRequiredOperations) {
     for (std::uint32_t e = 0; red.cells.size() < 4000; ++e) red.refine(e, red_tetrahedron_rule());
     const ForestField<3> field(red, distance);
     for (const double threshold : {0.0, 0.02}) {
-        expect_same_behind_tables(red, field, 0.3,
-                                  {.threshold = threshold, .normals = true, .cap = true});
+        expect_same_behind_tables(red, field, 0.3, {.threshold = threshold},
+                                  {.normals = true, .cap = true});
     }
     const ArchetypeGrid archetype;
     expect_same_behind_tables(archetype, ArchetypeField{}, 3.0, {});
@@ -164,7 +165,8 @@ TEST(Tables, PassOnStateAndOptionalOperations) {
     const CurvedField field(grid, distance);
     EXPECT_FALSE(grid.hanging.empty());
     EXPECT_EQ(BehindTables(grid, field).hierarchy->epoch(), 5U);
-    expect_same_behind_tables(grid, field, 0.3, {.threshold = 0.01, .normals = true, .cap = true});
+    expect_same_behind_tables(grid, field, 0.3, {.threshold = 0.01},
+                              {.normals = true, .cap = true});
     EXPECT_GT(State::uses, 0);
     EXPECT_EQ(State::live, 0);
     const BehindTables tables(grid, field);

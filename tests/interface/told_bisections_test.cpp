@@ -62,8 +62,9 @@ protected:
         grid = tetrahedra_in_c(&samples);
         field = samples_field_in_c(&samples);
     }
-    auto draw(double isovalue, const IsosurfaceOptions& options) const {
-        return isosurface<3>(*open_table<float>(grid, field), isovalue, options);
+    auto draw(double isovalue, const Projection& projection,
+              const IsosurfaceOptions& options = {}) const {
+        return isosurface<3>(*open_table<float>(grid, field), isovalue, projection, options);
     }
     std::string violation() const {
         std::array<char, 300> message{};
@@ -137,12 +138,12 @@ TEST_F(ToldBisections, GiveTheSurfaceOfThePlainTraversal) {
         const LatticeField lattice_field(lattice, std::span<const float>(values.values));
         for (const double threshold : {0.0, 0.01, 0.05, 0.3}) {
             SCOPED_TRACE(values.name + " at " + std::to_string(threshold));
-            const IsosurfaceOptions options{.threshold = threshold * values.range};
-            const auto told = draw(values.isovalue, options);
+            const Projection projection{.threshold = threshold * values.range};
+            const auto told = draw(values.isovalue, projection);
             EXPECT_GT(told.surface.simplices.size(), 0U);
             grid.middles = nullptr;
-            expect_same(told, draw(values.isovalue, options));
-            expect_same(told, isosurface(lattice, lattice_field, values.isovalue, options));
+            expect_same(told, draw(values.isovalue, projection));
+            expect_same(told, isosurface(lattice, lattice_field, values.isovalue, projection));
             show(values);
         }
     }
@@ -159,11 +160,11 @@ TEST_F(ToldBisections, GiveTheNormalsOfTheLattice) {
                                                      // Not drawn in patches.
                                                      {.normals = true, .at_nodes = true}}) {
                 SCOPED_TRACE(values.name + " at " + std::to_string(threshold));
-                IsosurfaceOptions o = options;
-                o.threshold = threshold * values.range;
-                const auto told = draw(values.isovalue, o);
+                const Projection projection{.threshold = threshold * values.range};
+                const auto told = draw(values.isovalue, projection, options);
                 EXPECT_EQ(told.surface.normals.size(), told.surface.vertices.size());
-                expect_same(told, isosurface(lattice, lattice_field, values.isovalue, o));
+                expect_same(
+                    told, isosurface(lattice, lattice_field, values.isovalue, projection, options));
                 // Gradients at corners give the same by the plain traversal, but for finest pieces,
                 // whose ends are no corners.
                 field.node_gradients = nullptr;
@@ -171,7 +172,8 @@ TEST_F(ToldBisections, GiveTheNormalsOfTheLattice) {
                                             std::size_t count, double(*out)[3]) {
                     return right_field.node_gradients(self, count, e->word, out);
                 };
-                if (o.cuts == Cuts::linear) expect_same(told, draw(values.isovalue, o));
+                if (options.cuts == Cuts::linear)
+                    expect_same(told, draw(values.isovalue, projection, options));
                 show(values);
             }
         }
@@ -201,9 +203,9 @@ TEST_F(ToldBisections, GiveTheSlicesOfThePlainTraversal) {
         for (const Plane& plane : {Plane({8, 8, 8}, {0, 0, 1}), Plane({7, 8, 8}, {0.3, 0.5, 0.8}),
                                    Plane({8, 8, 8}, {1, 1, 1}), Plane({16, 0, 0}, {-1, 0, 0})}) {
             for (const double threshold : {0.0, 0.05}) {
-                const IsosurfaceOptions options{.threshold = threshold * values.range};
+                const Projection projection{.threshold = threshold * values.range};
                 const auto draw_slice = [&] {
-                    return slice(*open_table<float>(grid, field), plane, options);
+                    return slice(*open_table<float>(grid, field), plane, projection);
                 };
                 const Slice told = draw_slice();
                 EXPECT_GT(told.surface.simplices.size(), 0U);
@@ -311,7 +313,7 @@ TEST_F(ToldBisections, ThatFailAreNamed) {
     EXPECT_EQ(refused_with([&] { field.node_values = [](auto...) { return 7; }; }),
               "the operation 'node_values' of the field failed with code 7");
     field.node_gradients = [](auto...) { return 9; };
-    EXPECT_EQ(refusal<GridError>([&] { draw(data[0].isovalue, {.normals = true}); }),
+    EXPECT_EQ(refusal<GridError>([&] { draw(data[0].isovalue, {}, {.normals = true}); }),
               "the operation 'node_gradients' of the field failed with code 9");
     show(data[0]);
     EXPECT_EQ(refused_with([&] { grid.middles = [](auto...) { return 3; }; }),

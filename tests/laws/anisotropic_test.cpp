@@ -51,7 +51,8 @@ void expect_closed_surfaces(const Grid& grid, const ForestField<3>& field) {
     const HierarchicalIndicator indicator(grid, field);
     const auto draw = [&](const Criterion& criterion, bool cap) {
         const IsosurfaceOptions options{.cap = cap, .verify = true};
-        expect_closed(isosurface(grid, field, 0.0, criterion, indicator, options).surface, cap);
+        expect_closed(isosurface(grid, field, 0.0, under(criterion, indicator), options).surface,
+                      cap);
     };
     for (const double epsilon : six_thresholds) {
         SCOPED_TRACE(epsilon);
@@ -110,14 +111,14 @@ void expect_closed_slices(const Grid& grid, const ForestField<3>& field, Area&& 
         for (const PlaneAt& at : planes) {
             SCOPED_TRACE(at.name);
             const Plane plane(at.through, at.normal);
-            const Slice s = slice(grid, field, plane, criterion, indicator, options);
+            const Slice s = slice(grid, field, plane, under(criterion, indicator), options);
             expect_closed(s.surface);
             for (const Point& x : s.surface.vertices) EXPECT_NEAR(plane.value(x), 0, 1e-12);
             if (const double exact = area(at); exact >= 0) {
                 EXPECT_NEAR(surface_report(s.surface).area, exact, 1e-12);
             }
         }
-        expect_closed(slice(grid, field, ball, criterion, indicator, options).surface);
+        expect_closed(slice(grid, field, ball, under(criterion, indicator), options).surface);
     }
 }
 template <class Grid>
@@ -275,7 +276,7 @@ TEST(Anisotropic, NoElementAboveACrossingNodeStops) {
     const ParentsByPlace grid(forest);
     const auto field = noise(forest, 1);
     const HierarchicalIndicator indicator(grid, field);
-    EXPECT_THROW(isosurface(grid, field, 0.0, DeepestLevel(0), indicator), InvalidInput);
+    EXPECT_THROW(isosurface(grid, field, 0.0, under(DeepestLevel(0), indicator)), InvalidInput);
     const Places places(forest);
     const auto key = [&](const Point& x) { return static_cast<NodeKey>(*places.find(x)); };
     const NodeLevels levels(grid);  // -1 where S does not hold

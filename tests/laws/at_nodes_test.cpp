@@ -65,9 +65,9 @@ void expect_clean(const Grid& grid, const NodalSamples& samples, std::size_t& be
         const Threshold criterion(&indicator, threshold);
         for (const bool cap : {false, true}) {
             IsosurfaceOptions options{.cap = cap};
-            const auto plain = isosurface(grid, field, 0.0, criterion, indicator, options);
+            const auto plain = isosurface(grid, field, 0.0, under(criterion, indicator), options);
             options.at_nodes = true;
-            const auto clean = isosurface(grid, field, 0.0, criterion, indicator, options);
+            const auto clean = isosurface(grid, field, 0.0, under(criterion, indicator), options);
             expect_closed(clean.surface, cap);
             EXPECT_LE(clean.surface.simplices.size(), plain.surface.simplices.size());
             if (cap) {
@@ -77,8 +77,8 @@ void expect_clean(const Grid& grid, const NodalSamples& samples, std::size_t& be
             EXPECT_EQ(pillows(clean.surface), 0U);
             before += slivers(plain.surface);
             after += slivers(clean.surface);
-            expect_same(clean, isosurface(grid, field, 0.0, criterion, indicator, options,
-                                          ThreadExecutor(2)));
+            expect_same(clean, isosurface(grid, field, 0.0, under(criterion, indicator), options,
+                                          {ThreadExecutor(2)}));
         }
     }
 }
@@ -102,8 +102,9 @@ TEST(AtNodesOptions, RefuseReferenceCoordinates) {
     for (auto& grid : BalancedOctree::grids()) {
         const NodalSamples samples = plateaus(grid.node_positions());
         const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
-        expect_refused([&] { isosurface(grid, field, 0.0, {.reference = true, .at_nodes = true}); },
-                       "a surface with vertices at nodes has no reference coordinates");
+        expect_refused(
+            [&] { isosurface(grid, field, 0.0, {}, {.reference = true, .at_nodes = true}); },
+            "a surface with vertices at nodes has no reference coordinates");
     }
 }
 

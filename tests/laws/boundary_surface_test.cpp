@@ -26,7 +26,7 @@ TYPED_TEST(BoundarySurfaces, EncloseTheCube) {
             const HierarchicalIndicator indicator(grid, field);
             for (const double threshold : six_thresholds) {
                 const Threshold criterion(&indicator, threshold);
-                const Slice s = boundary_surface(grid, field, criterion, indicator);
+                const Slice s = boundary_surface(grid, field, under(criterion, indicator));
                 expect_closed(s.surface, true);
                 const SurfaceReport report = surface_report(s.surface);
                 EXPECT_NEAR(report.area, 6, 1e-12);
@@ -66,7 +66,8 @@ TYPED_TEST(BoundarySurfaces, CloseTheCubeCutOpen) {
             for (const double threshold : {0.0, 0.1, 1.0}) {
                 const Threshold criterion(&indicator, threshold);
                 for (const auto& [plane, volume] : halves) {
-                    const Slice s = slice(grid, field, plane, criterion, indicator, {.cap = true});
+                    const Slice s =
+                        slice(grid, field, plane, under(criterion, indicator), {.cap = true});
                     expect_closed(s.surface, true);
                     EXPECT_NEAR(surface_report(s.surface).volume, volume, 1e-9);
                 }

@@ -21,8 +21,7 @@ namespace collapse_budget_test {
 template <class Real>
 std::size_t collapsed_triangles(const Hierarchy<Real>& h, double isovalue,
                                 const HierarchicalIndicator& deviations, double error) {
-    auto surface =
-        isosurface<3>(h, isovalue, deviations, {.threshold = collapse_start * error}).surface;
+    auto surface = isosurface<3>(h, isovalue, under(deviations, collapse_start * error)).surface;
     collapse(surface, h, isovalue, deviations, {.error = error});
     return surface.simplices.size();
 }
@@ -54,7 +53,8 @@ TYPED_TEST(CollapseBudgets, AreKeptAtTheLeastError) {
             const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
             const auto h = erase(grid, field);
             const HierarchicalIndicator deviations(h, NodeError::deviation);
-            const std::size_t all = isosurface<3>(h, 0.0, deviations).surface.simplices.size();
+            const std::size_t all =
+                isosurface<3>(h, 0.0, under(deviations, 0)).surface.simplices.size();
             if (all < 60) return;
             const auto search = [&](std::uint64_t number) {
                 return find_collapse_error(h, 0.0, thresholds_of(deviations), deviations, number);
@@ -83,7 +83,7 @@ TYPED_TEST(CollapseBudgets, AreKeptAtTheLeastDistance) {
             const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
             const auto h = erase(grid, field);
             const HierarchicalIndicator deviations(h, NodeError::deviation);
-            const Surface<3> whole = isosurface<3>(h, 0.0, Exact{}, deviations).surface;
+            const Surface<3> whole = isosurface<3>(h, 0.0, under(Exact{}, deviations)).surface;
             const std::size_t all = whole.simplices.size();
             if (all < 60) return;
             const auto at = [&](double distance) { return Threshold(&deviations, distance); };
@@ -121,7 +121,7 @@ struct Sampled {
           deviations(grid, field, NodeError::deviation) {}
 
     TriangleBudget find(std::uint64_t number, const IsosurfaceOptions& options = {}) const {
-        return find_collapse_error(grid, field, data.isovalue, thresholds_of(deviations),
+        return find_collapse_error(erase(grid, field), data.isovalue, thresholds_of(deviations),
                                    deviations, number, options);
     }
 
@@ -154,7 +154,7 @@ TEST(CollapseBudgets, AreFilledByDistancesInFewTrials) {
         const Surface<3> whole =
             isosurface(sampled.grid, sampled.field, sampled.data.isovalue).surface;
         const TriangleBudget found =
-            find_collapse_distance(sampled.grid, sampled.field, sampled.data.isovalue, whole,
+            find_collapse_distance(erase(sampled.grid, sampled.field), sampled.data.isovalue, whole,
                                    thresholds_of(sampled.deviations), sampled.deviations, number);
         EXPECT_TRUE(found.end() == BudgetEnd::filled || found.next_triangles > number);
         EXPECT_LE(found.triangles, number);

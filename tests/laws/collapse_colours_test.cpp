@@ -156,13 +156,12 @@ TYPED_TEST(CollapsedColours, KeepErrorsAndPlaceOnSlicesAndBoundaries) {
             const HierarchicalIndicator indicator(h, NodeError::deviation);
             const double error = 0.1 * (indicator.greatest() - indicator.least()) + 1e-9;
             for (const Plane& plane : planes) {
-                const Surface<3> drawn =
-                    slice(h, plane, indicator, {.threshold = error / 2}).surface;
+                const Surface<3> drawn = slice(h, plane, under(indicator, error / 2)).surface;
                 const Surface<3> finest = slice(h, plane).surface;
                 expect_laws(drawn, finest, h, indicator, error, counts);
             }
             const Threshold half(&indicator, error / 2);
-            const Surface<3> drawn = boundary_surface(h, half, indicator).surface;
+            const Surface<3> drawn = boundary_surface(h, under(half, indicator)).surface;
             expect_laws(drawn, boundary_surface(h).surface, h, indicator, error, counts);
         });
         EXPECT_LT(10 * counts.after, 9 * counts.before);
@@ -177,7 +176,7 @@ TYPED_TEST(CollapsedColours, KeepErrorsAndPlaceOnShadings) {
             const auto h = erase(grid, field);
             const HierarchicalIndicator indicator(h, NodeError::deviation);
             const double error = 0.1 * (indicator.greatest() - indicator.least()) + 1e-9;
-            const Surface<3> drawn = shading(h, indicator, {.threshold = error / 2}).surface;
+            const Surface<3> drawn = shading(h, under(indicator, error / 2)).surface;
             const Surface<3> finest = shading(h).surface;
             expect_laws(drawn, finest, h, indicator, error, counts);
         });
@@ -193,8 +192,7 @@ TYPED_TEST(CollapsedColours, LeaveAGraphOfTheSameHeights) {
             const HierarchicalIndicator indicator(h, NodeError::deviation);
             const double error = 0.1 * (indicator.greatest() - indicator.least()) + 1e-9;
             constexpr double scale = 2.5;
-            const Surface<3> drawn =
-                height_field(h, scale, indicator, {.threshold = error / 2}).surface;
+            const Surface<3> drawn = height_field(h, scale, under(indicator, error / 2)).surface;
             const auto flattened = [&](Surface<3> s) {
                 for (std::size_t v = 0; v < s.vertices.size(); ++v) {
                     s.vertices[v][2] -= scale * s.attributes[v];
@@ -297,7 +295,7 @@ TEST(CollapsedColours, KeepTheRimOfAFlatPillow) {
     }
     pillow.attributes.assign(pillow.vertices.size(), 1);
     const Surface<3> drawn = pillow;
-    collapse_colours(pillow, grid, field, indicator, {.errors = {0.1}});
+    collapse_colours(pillow, erase(grid, field), indicator, {.errors = {0.1}});
     EXPECT_LE(pillow.simplices.size(), 16U);
     expect_same_support(pillow, drawn);
 }
@@ -309,7 +307,7 @@ TEST(CollapsedColours, AreTheSameWithAnyNumberOfThreads) {
     const LatticeField field(grid, std::span<const float>(data.values));
     const auto h = erase(grid, field);
     const HierarchicalIndicator indicator(h, NodeError::deviation);
-    const Surface<3> drawn = slice(h, Plane({0, 0, 1}, {0, 0, 1}), indicator).surface;
+    const Surface<3> drawn = slice(h, Plane({0, 0, 1}, {0, 0, 1}), under(indicator, 0)).surface;
     EXPECT_GT(drawn.vertices.size(), 1U << 14U);
     const ColourCollapseOptions options{.errors = {0.02 * data.range}};
     Surface<3> one = drawn;
@@ -331,7 +329,7 @@ TEST(CollapsedColours, RefuseOptionsOutOfRange) {
     const HierarchicalIndicator indicator(grid, field);
     const Surface<3> drawn = boundary_surface(grid, field).surface;
     const auto refuse = [&](Surface<3> s, const ColourCollapseOptions& options, const char* why) {
-        expect_refused([&] { collapse_colours(s, grid, field, indicator, options); }, why);
+        expect_refused([&] { collapse_colours(s, erase(grid, field), indicator, options); }, why);
     };
     refuse(drawn, {}, "no error to keep");
     refuse(drawn, {.errors = {0}}, "not a positive number");
@@ -347,7 +345,8 @@ TEST(CollapsedColours, RefuseOptionsOutOfRange) {
                              drawn.attributes.end());
     refuse(richer, {.errors = {1}}, "the field only 1 component");
     Surface<3> nothing;
-    EXPECT_EQ(collapse_colours(nothing, grid, field, indicator, {.errors = {1}}).collapses, 0U);
+    EXPECT_EQ(collapse_colours(nothing, erase(grid, field), indicator, {.errors = {1}}).collapses,
+              0U);
 }
 
 }  // namespace collapse_colours_test

@@ -46,7 +46,7 @@ TYPED_TEST(CollapseWithin, KeepsTheDistanceTheManifoldAndTheDomain) {
             const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
             const auto h = erase(grid, field);
             const HierarchicalIndicator indicator(h);
-            const auto whole = isosurface<3>(h, 0.0, Exact{}, indicator).surface;
+            const auto whole = isosurface<3>(h, 0.0, under(Exact{}, indicator)).surface;
             if (whole.simplices.empty()) return;
             {
                 constexpr double distance = 0.08;
@@ -54,7 +54,7 @@ TYPED_TEST(CollapseWithin, KeepsTheDistanceTheManifoldAndTheDomain) {
                 auto surface = begun(h, nearness, 0.0, indicator);
                 const SurfaceReport drawn = surface_report(surface);
                 const Collapsed result =
-                    collapse(surface, grid, field, 0.0, indicator, {.nearness = nearness});
+                    collapse(surface, erase(grid, field), 0.0, indicator, {.nearness = nearness});
                 EXPECT_EQ(result.exceeding, 0U);
                 EXPECT_EQ(result.missed, 0U);
                 expect_closed(surface);
@@ -84,7 +84,7 @@ void expect_kept_on_lattice() {
         const LatticeField field(grid, std::span<const float>(data.values));
         const auto h = erase(grid, field);
         const HierarchicalIndicator indicator(h);
-        const auto whole = isosurface<3>(h, data.isovalue, Exact{}, indicator).surface;
+        const auto whole = isosurface<3>(h, data.isovalue, under(Exact{}, indicator)).surface;
         for (const double distance : {0.3, 1.0}) {
             SCOPED_TRACE(distance);
             const Nearness nearness{whole, distance};
@@ -114,11 +114,11 @@ struct Drawn {
           grid({.samples = n}),
           field(grid, std::span<const float>(data.values)),
           indicator(grid, field),
-          whole{isosurface(grid, field, data.isovalue, Exact{}, indicator).surface} {}
+          whole{isosurface(grid, field, data.isovalue, under(Exact{}, indicator)).surface} {}
 
     Collapsed collapse(Surface<3>& surface, const CollapseOptions& options,
                        const Executor& executor = SequentialExecutor{}) const {
-        return nestgrid::collapse(surface, grid, field, data.isovalue, indicator, options,
+        return nestgrid::collapse(surface, erase(grid, field), data.isovalue, indicator, options,
                                   executor);
     }
 
@@ -157,7 +157,7 @@ TEST(CollapseWithinDistances, AreKeptBesideAnError) {
 TEST(CollapseWithinDistances, TellWhatWasTooFarFromTheBeginning) {
     const Drawn drawn(sampled_fields({17, 17, 17})[0], {17, 17, 17});
     const Surface<3> other =
-        isosurface(drawn.grid, drawn.field, 0.3, Exact{}, drawn.indicator).surface;
+        isosurface(drawn.grid, drawn.field, 0.3, under(Exact{}, drawn.indicator)).surface;
     Surface<3> surface = other;
     const Collapsed result = drawn.collapse(surface, {.nearness = Nearness{drawn.whole, 0.2}});
     EXPECT_EQ(result.exceeding, other.simplices.size());

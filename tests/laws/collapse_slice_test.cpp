@@ -108,7 +108,7 @@ TEST(CollapsedSlicesOfLattices, KeepBordersOnTheBoundary) {
     const HierarchicalIndicator indicator(grid, field);
     const Surface<3> whole = slice(grid, field, across).surface;
     Surface<3> surface = whole;
-    collapse_colours(surface, grid, field, indicator,
+    collapse_colours(surface, erase(grid, field), indicator,
                      {.errors = {0.1}, .nearness = Nearness{whole, 0.05}});
     EXPECT_LT(surface.boundary.size(), whole.boundary.size() / 2);
     EXPECT_LT(8 * surface.simplices.size(), whole.simplices.size());
@@ -213,12 +213,12 @@ TEST(CollapsedSlicesOfLattices, TellWhatWasTooFarFromTheBeginning) {
     const Surface<3> other = slice(grid, field, Sphere({8, 8, 8}, 5)).surface;
     Surface<3> surface = other;
     const ColourCollapseOptions options{.errors = {1}, .nearness = Nearness{whole, 0.2}};
-    const Collapsed result = collapse_colours(surface, grid, field, indicator, options);
+    const Collapsed result = collapse_colours(surface, erase(grid, field), indicator, options);
     EXPECT_EQ(result.exceeding, other.simplices.size());
     EXPECT_EQ(result.missed, whole.simplices.size());
     EXPECT_EQ(surface.simplices, other.simplices);
     Surface<3> nothing;
-    EXPECT_EQ(collapse_colours(nothing, grid, field, indicator, options).missed,
+    EXPECT_EQ(collapse_colours(nothing, erase(grid, field), indicator, options).missed,
               whole.simplices.size());
 }
 
@@ -230,7 +230,7 @@ TEST(CollapsedSlicesOfLattices, RefuseOptionsOutOfRange) {
     const Surface<3> whole = slice(grid, field, Sphere({2, 2, 2}, 1.5)).surface;
     const auto refuse = [&](const ColourCollapseOptions& options, const char* why) {
         Surface<3> s = whole;
-        expect_refused([&] { collapse_colours(s, grid, field, indicator, options); }, why);
+        expect_refused([&] { collapse_colours(s, erase(grid, field), indicator, options); }, why);
     };
     refuse({.errors = {1}, .nearness = Nearness{whole, 0}}, "not a positive number");
     refuse({.errors = {1}, .scale = 1, .nearness = Nearness{whole, 1}}, "exclude each other");
@@ -242,7 +242,7 @@ TEST(CollapsedSlicesOfLattices, RefuseOptionsOutOfRange) {
     Surface<3> s = whole;
     expect_refused(
         [&] {
-            collapse_colours(s, plane, flat, in_plane,
+            collapse_colours(s, erase(plane, flat), in_plane,
                              {.errors = {1}, .nearness = Nearness{whole, 1}});
         },
         "dimension");

@@ -35,7 +35,7 @@ void expect_error_kept(const Surface<3>& s, const Hierarchy<Real>& h, double iso
         const auto of = samples_of(corners_of(s, t), steps);
         points.insert(points.end(), of.begin(), of.end());
     }
-    const ProbeResult probed = probe<Real>(h, points);
+    const ProbeResult probed = probe(h, points);
     std::size_t exceeding = 0;
     for (std::size_t t = 0; t < s.simplices.size(); ++t) {
         double greatest = 0;
@@ -61,10 +61,10 @@ TYPED_TEST(Collapse, KeepsTheErrorTheManifoldAndTheBorder) {
             const auto h = erase(grid, field);
             const HierarchicalIndicator indicator(h, NodeError::deviation);
             constexpr double error = 0.1;
-            auto surface = isosurface<3>(h, 0.0, indicator, {.threshold = error / 2}).surface;
+            auto surface = isosurface<3>(h, 0.0, under(indicator, error / 2)).surface;
             const SurfaceReport before = surface_report(surface);
             const Collapsed result =
-                collapse(surface, grid, field, 0.0, indicator, {.error = error});
+                collapse(surface, erase(grid, field), 0.0, indicator, {.error = error});
             expect_closed(surface);
             const SurfaceReport after = surface_report(surface);
             EXPECT_EQ(after.triangles == before.triangles, result.collapses == 0);
@@ -155,8 +155,7 @@ void expect_laws_on_lattice() {
         for (const double part : {0.05, 0.3}) {
             SCOPED_TRACE(part);
             const double error = part * data.range;
-            auto surface =
-                isosurface<3>(h, data.isovalue, indicator, {.threshold = error / 2}).surface;
+            auto surface = isosurface<3>(h, data.isovalue, under(indicator, error / 2)).surface;
             const SurfaceReport before = surface_report(surface);
             const std::size_t wrong_before = wrong_sides(surface, data, n, error);
             const Collapsed result =
@@ -179,9 +178,10 @@ TEST(Collapse, LeavesFewTriangles) {
     const SampledField data = sampled_fields(n)[0];
     const LatticeField field(grid, std::span<const float>(data.values));
     const HierarchicalIndicator indicator(grid, field);
-    auto surface = isosurface(grid, field, data.isovalue, indicator, {.normals = true}).surface;
+    auto surface =
+        isosurface(grid, field, data.isovalue, under(indicator, 0), {.normals = true}).surface;
     const std::size_t before = surface.simplices.size();
-    collapse(surface, grid, field, data.isovalue, indicator, {.error = 0.01});
+    collapse(surface, erase(grid, field), data.isovalue, indicator, {.error = 0.01});
     EXPECT_LE(surface.simplices.size(), before / 40);
     EXPECT_EQ(surface.normals.size(), surface.vertices.size());
     EXPECT_EQ(surface_report(surface).area_behind, 0);
@@ -193,13 +193,13 @@ TEST(Collapse, IsTheSameWithAnyNumberOfThreads) {
     const SampledField data = sampled_fields(n)[3];  // noise: more than one block
     const LatticeField field(grid, std::span<const float>(data.values));
     const HierarchicalIndicator indicator(grid, field, NodeError::deviation);
-    const auto drawn = isosurface(grid, field, data.isovalue, indicator).surface;
+    const auto drawn = isosurface(grid, field, data.isovalue, under(indicator, 0)).surface;
     Surface<3> one = drawn;
-    collapse(one, grid, field, data.isovalue, indicator, {.error = 0.3});
+    collapse(one, erase(grid, field), data.isovalue, indicator, {.error = 0.3});
     EXPECT_LT(one.simplices.size(), drawn.simplices.size());
     for (const std::size_t threads : {2U, 5U}) {
         Surface<3> many = drawn;
-        collapse(many, grid, field, data.isovalue, indicator, {.error = 0.3},
+        collapse(many, erase(grid, field), data.isovalue, indicator, {.error = 0.3},
                  ThreadExecutor(threads));
         expect_same_bits(many.vertices, one.vertices, "vertices");
         expect_same_bits(many.simplices, one.simplices, "simplices");
@@ -216,10 +216,10 @@ TEST(Collapse, RefusesOptionsOutOfRange) {
     for (const CollapseOptions& options :
          {CollapseOptions{}, CollapseOptions{.error = -1}, CollapseOptions{.error = nan},
           CollapseOptions{.error = 1, .turn = 90}, CollapseOptions{.error = 1, .shape = 1}}) {
-        EXPECT_THROW(collapse(surface, grid, field, 0.0, indicator, options), InvalidInput);
+        EXPECT_THROW(collapse(surface, erase(grid, field), 0.0, indicator, options), InvalidInput);
     }
-    EXPECT_THROW(collapse(surface, grid, field, nan, indicator, {.error = 1}), InvalidInput);
-    EXPECT_EQ(collapse(surface, grid, field, 0.0, indicator, {.error = 1}).collapses, 0U);
+    EXPECT_THROW(collapse(surface, erase(grid, field), nan, indicator, {.error = 1}), InvalidInput);
+    EXPECT_EQ(collapse(surface, erase(grid, field), 0.0, indicator, {.error = 1}).collapses, 0U);
 }
 
 /// The check is an upper bound of what samples find, and in simplices no more than what they find.
@@ -249,7 +249,7 @@ TYPED_TEST(FieldChecks, AreNoLessThanSamples) {
                 if (!check.keeps(engine::FlatTriangle(x), greatest)) continue;
                 ++kept;
                 const auto points = samples_of(x, 60);
-                const ProbeResult probed = probe<double>(h, points);
+                const ProbeResult probed = probe(h, points);
                 double seen = 0;
                 for (std::size_t p = 0; p < points.size(); ++p) {
                     ASSERT_TRUE(probed.found(p));

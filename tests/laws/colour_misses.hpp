@@ -49,7 +49,7 @@ public:
             const auto of = samples_of(corners_of(surface_, t), steps);
             points.insert(points.end(), of.begin(), of.end());
         }
-        const ProbeResult probed = probe<Real>(h, points);
+        const ProbeResult probed = probe(h, points);
         const std::size_t each = points.size() / std::max<std::size_t>(greatest_.size(), 1);
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Point weights = weights_of(corners_of(surface_, i / each), points[i]);

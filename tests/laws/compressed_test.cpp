@@ -44,11 +44,10 @@ TYPED_TEST(Compressed, IsTheFieldBitForBit) {
         EXPECT_EQ(a.least(), b.least());
         EXPECT_EQ(a.greatest(), b.greatest());
         for (const double epsilon : {0.0, 0.01, 0.1}) {
-            const auto plain = isosurface(grid, field, 0.0, Threshold(&a, epsilon), a);
-            expect_same(isosurface(grid, decoded, 0.0, Threshold(&b, epsilon), b).surface,
-                        plain.surface);
-            const auto blended = isosurface(grid, field, 0.0, Blended(&a, epsilon, 1.5), a);
-            expect_same(isosurface(grid, decoded, 0.0, Blended(&b, epsilon, 1.5), b).surface,
+            const auto plain = isosurface(grid, field, 0.0, under(a, epsilon));
+            expect_same(isosurface(grid, decoded, 0.0, under(b, epsilon)).surface, plain.surface);
+            const auto blended = isosurface(grid, field, 0.0, under(Blended(&a, epsilon, 1.5), a));
+            expect_same(isosurface(grid, decoded, 0.0, under(Blended(&b, epsilon, 1.5), b)).surface,
                         blended.surface);
         }
     });
@@ -110,11 +109,11 @@ void expect_samples_come_back(int n) {
         const HierarchicalIndicator b(grid, decoded);
         for (const double part : {0.0, 0.02}) {
             const double epsilon = part * data.range;
-            expect_same(isosurface(grid, decoded, data.isovalue, Threshold(&b, epsilon), b).surface,
-                        isosurface(grid, field, data.isovalue, Threshold(&a, epsilon), a).surface);
+            expect_same(isosurface(grid, decoded, data.isovalue, under(b, epsilon)).surface,
+                        isosurface(grid, field, data.isovalue, under(a, epsilon)).surface);
             const Plane plane({n / 3.0, n / 3.0, n / 3.0}, {1, 2, 3});
-            expect_same(slice(grid, decoded, plane, Threshold(&b, epsilon), b).surface,
-                        slice(grid, field, plane, Threshold(&a, epsilon), a).surface);
+            expect_same(slice(grid, decoded, plane, under(b, epsilon)).surface,
+                        slice(grid, field, plane, under(a, epsilon)).surface);
         }
     }
 }
@@ -168,8 +167,8 @@ TEST(Compressed, IntegersTakeFewBits) {
     const CompressedField<LatticeOctree<3>, float> decoded(grid, values);
     const HierarchicalIndicator a(grid, field);
     const HierarchicalIndicator b(grid, decoded);
-    expect_same(isosurface(grid, decoded, 80.5, Threshold(&b, 0), b).surface,
-                isosurface(grid, field, 80.5, Threshold(&a, 0), a).surface);
+    expect_same(isosurface(grid, decoded, 80.5, under(b, 0)).surface,
+                isosurface(grid, field, 80.5, under(a, 0)).surface);
 }
 
 TEST(Compressed, RefusesWhatCannotBeDecoded) {
@@ -181,7 +180,8 @@ TEST(Compressed, RefusesWhatCannotBeDecoded) {
     const CompressedField<LatticeOctree<3>, float> decoded(grid, values);
     const HierarchicalIndicator indicator(grid, decoded);
     const auto insists = Unsaturated(Threshold(&indicator, 0.1));
-    expect_refused([&] { isosurface(grid, decoded, 0.5, insists, indicator); }, "not saturated");
+    expect_refused([&] { isosurface(grid, decoded, 0.5, under(insists, indicator)); },
+                   "not saturated");
     samples[62] = std::numeric_limits<float>::infinity();
     expect_refused([&] { CompressedValues<float>(erase(grid, field), {.step = 1}); }, "multiples");
 }

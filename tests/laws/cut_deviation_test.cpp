@@ -144,7 +144,7 @@ class LeafJudge final : public engine::Visitor<double> {
 public:
     using View = engine::ElementView<double>;
 
-    LeafJudge(const Hierarchy<double>& h, const Projected& exact, const Criterion& criterion,
+    LeafJudge(const Hierarchy<double>& h, const ProjectedNodes& exact, const Criterion& criterion,
               double isovalue, const std::function<void(const JudgedLeaf&)>& function)
         : exact_{&exact},
           criterion_{&criterion},
@@ -179,7 +179,7 @@ public:
 private:
     static constexpr int none_ = -1;
 
-    const Projected* exact_;
+    const ProjectedNodes* exact_;
     const Criterion* criterion_;
     double isovalue_;
     const std::function<void(const JudgedLeaf&)>* function_;
@@ -190,8 +190,8 @@ private:
 };
 
 /// The errors of a projection, at nodes, on edges of leaves, and at random points of them.
-Errors errors_of(const Hierarchy<double>& h, const Projected& exact, const Criterion& criterion,
-                 double isovalue) {
+Errors errors_of(const Hierarchy<double>& h, const ProjectedNodes& exact,
+                 const Criterion& criterion, double isovalue) {
     Errors e;
     std::mt19937 random(5);
     const std::function<void(const JudgedLeaf&)> judge = [&](const JudgedLeaf& leaf) {
@@ -296,7 +296,7 @@ TYPED_TEST(CutDeviation, ThatStopsIsTheErrorOfTheSurfaceThereAndBack) {
     for_each_cut_field<TypeParam>(3, 5, [&](const auto& h) {
         const HierarchicalIndicator bounds(h);
         const SweptIndicator indicator = cut_deviations(h, isovalues, bounds);
-        const Projected exact(h, Exact(), 0.0);
+        const ProjectedNodes exact(h, Exact(), 0.0);
         for (const double threshold : all_thresholds) {
             SCOPED_TRACE(threshold);
             const Threshold s(&indicator, threshold);
@@ -316,19 +316,19 @@ TYPED_TEST(CutDeviation, KeepsTheErrorOfClosedSurfaces) {
         const HierarchicalIndicator bounds(h);
         const std::array<double, 1> isovalue{0};
         const SweptIndicator indicator = cut_deviations(h, isovalue, bounds);
-        const double flat = isosurface<dimension>(h, 0.0, Exact(), bounds).surface_error;
+        const double flat = isosurface<dimension>(h, 0.0, under(Exact(), bounds)).surface_error;
         EXPECT_TRUE(flat == 0 || !has_simplices_only(h));
         for (const double threshold : {0.0, 0.1, 0.3, 1.0}) {
             SCOPED_TRACE(threshold);
             const Threshold s(&indicator, threshold);
-            const auto result = isosurface<dimension>(h, 0.0, s, bounds);
+            const auto result = isosurface<dimension>(h, 0.0, under(s, bounds));
             expect_closed(result.surface);
             EXPECT_LE(result.surface_error, std::max(threshold, flat));
             EXPECT_LE(result.error_bound, result.surface_error);
             EXPECT_LE(greatest_on_surface(h, result.surface, 0),
                       result.surface_error + cut_distance * (1 + result.range_bound));
         }
-        const auto other = isosurface<dimension>(h, 0.1, Threshold(&indicator, 0.3), bounds);
+        const auto other = isosurface<dimension>(h, 0.1, under(Threshold(&indicator, 0.3), bounds));
         EXPECT_EQ(other.surface_error, std::numeric_limits<double>::infinity());
     });
 }
@@ -339,7 +339,7 @@ TYPED_TEST(CutDeviation, GoesWithOtherCriteria) {
         const HierarchicalIndicator bounds(h);
         const SweptIndicator indicator = cut_deviations(h, isovalue, bounds, {.factor = 1.5});
         expect_saturated(h, indicator);
-        const Projected exact(h, Exact(), 0.0);
+        const ProjectedNodes exact(h, Exact(), 0.0);
         for (const double threshold : {0.1, 0.5}) {
             SCOPED_TRACE(threshold);
             const Blended blended(&indicator, threshold, 1.5);
@@ -399,11 +399,11 @@ void expect_error_on_lattice(const Grid& grid, std::size_t count) {
         for (NodeKey node = 0; node < h.facts().node_count; ++node) {
             EXPECT_EQ(many.stop(node), indicator.stop(node));
         }
-        const Projected exact(h, Exact(), 0.5);
+        const ProjectedNodes exact(h, Exact(), 0.5);
         for (const double threshold : {0.0, 0.02, 0.2, 0.4}) {
             const Threshold s(&indicator, threshold);
             EXPECT_LE(errors_of(h, exact, s, 0.5).greatest(), threshold + rounding);
-            const auto result = isosurface<dimension>(h, 0.5, s, bounds);
+            const auto result = isosurface<dimension>(h, 0.5, under(s, bounds));
             expect_closed(result.surface);
             EXPECT_LE(greatest_on_surface(h, result.surface, 0.5),
                       result.surface_error + cut_distance);
@@ -425,8 +425,8 @@ TEST(CutDeviation, RefusesWhatIsNoIsovalue) {
     const LatticeField field(grid, std::span<const double>(values));
     const HierarchicalIndicator bounds(grid, field);
     const std::array<double, 1> nan{std::numeric_limits<double>::quiet_NaN()};
-    EXPECT_THROW(cut_deviations(grid, field, nan, bounds), InvalidInput);
-    EXPECT_THROW(slope_deviations(grid, field, nan, bounds), InvalidInput);
+    EXPECT_THROW(cut_deviations({grid, field}, nan, bounds), InvalidInput);
+    EXPECT_THROW(slope_deviations({grid, field}, nan, bounds), InvalidInput);
 }
 
 }  // namespace cut_deviation_test

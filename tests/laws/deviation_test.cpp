@@ -78,15 +78,15 @@ TYPED_TEST(Deviation, ThatStopsIsTheErrorAtMost) {
         const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
         const auto h = erase(grid, field);
         const HierarchicalIndicator indicator(h, NodeError::deviation);
-        const Projected exact(h, Exact(), 0.0);
+        const ProjectedNodes exact(h, Exact(), 0.0);
         for (const double threshold : all_thresholds) {
             SCOPED_TRACE(threshold);
             const Threshold s(&indicator, threshold);
-            const Projected projected(h, s, 0.0);
+            const ProjectedNodes projected(h, s, 0.0);
             const double error = projected.difference(exact);
             EXPECT_LE(error, threshold);
             EXPECT_EQ(projected.interpolated_corners(), 0U);
-            const Projected blended(h, Blended(&indicator, threshold, 1.5), 0.0);
+            const ProjectedNodes blended(h, Blended(&indicator, threshold, 1.5), 0.0);
             EXPECT_LE(blended.difference(exact), 1.5 * threshold);
         }
     });
@@ -98,12 +98,12 @@ TYPED_TEST(Deviation, BoundsTheErrorOfClosedSurfaces) {
         const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
         const auto h = erase(grid, field);
         const HierarchicalIndicator indicator(h, NodeError::deviation);
-        const Projected exact(h, Exact(), 0.0);
+        const ProjectedNodes exact(h, Exact(), 0.0);
         for (const double threshold : all_thresholds) {
             SCOPED_TRACE(threshold);
-            const auto result = isosurface<dimension>(h, 0.0, indicator, {.threshold = threshold});
+            const auto result = isosurface<dimension>(h, 0.0, under(indicator, threshold));
             expect_closed(result.surface);
-            const Projected projected(h, Threshold(&indicator, threshold), 0.0);
+            const ProjectedNodes projected(h, Threshold(&indicator, threshold), 0.0);
             // On what is drawn the data are no further from the level than anywhere.
             const double where_drawn =
                 std::min(projected.difference_where_drawn(exact), result.range_bound);
@@ -180,9 +180,9 @@ void expect_exact_on_lattice(const std::array<int, dim>& samples) {
         const HierarchicalIndicator spread(h, NodeError::deviation, SequentialExecutor{},
                                            {.factor = 1.5});
         expect_saturated(h, spread);
-        const Projected exact(h, Exact(), 0.5);
+        const ProjectedNodes exact(h, Exact(), 0.5);
         for (const double threshold : {0.0, 0.02, 0.2, 0.6}) {
-            const Projected projected(h, Threshold(&indicator, threshold), 0.5);
+            const ProjectedNodes projected(h, Threshold(&indicator, threshold), 0.5);
             EXPECT_LE(projected.difference(exact), threshold);
         }
         const HierarchicalIndicator many(h, NodeError::deviation, ThreadExecutor(3));

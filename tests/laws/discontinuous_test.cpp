@@ -176,7 +176,8 @@ TYPED_TEST(Discontinuous, StopsWithinTheThreshold) {
             std::size_t before = field.grid->leaf_count();
             Below<Grid> below(field);
             for (const double threshold : {0.0, 0.021, 0.05, 0.2, 1e9}) {
-                const auto result = shading(data, deviations, {.threshold = threshold});
+                const auto result =
+                    shading(data, {.threshold = threshold, .deviations = &deviations});
                 const auto elements = result.surface.elements.template as<ElementOf<Grid>>();
                 const auto corners = drawn_corners(result.surface);
                 double greatest = 0;  // of what elements deviate
@@ -229,7 +230,8 @@ TYPED_TEST(Discontinuous, SlicesTakeEachPointOfAPlaneOnce) {
                 const nestgrid::Plane plane(through, normal);
                 std::size_t before = ~std::size_t{0};
                 for (const double threshold : {0.0, 0.05, 1e9}) {
-                    const auto result = slice(data, plane, deviations, {.threshold = threshold});
+                    const auto result =
+                        slice(data, plane, {.threshold = threshold, .deviations = &deviations});
                     const Surface<3>& drawn = result.surface;
                     EXPECT_NEAR(area_of(drawn), area_in_cube(through, normal), 1e-12);
                     for (const Point& x : drawn.vertices) EXPECT_NEAR(plane.value(x), 0, 1e-12);
@@ -289,13 +291,15 @@ TYPED_TEST(Discontinuous, NeedsNoDeviationsAtThresholdZero) {
         const ElementDeviations deviations(data);
         const DiscontinuousOptions coarse{.threshold = 0.1};
         if constexpr (TypeParam::Grid::dimension == 2) {
-            expect_same(shading(data).surface, shading(data, deviations).surface);
-            expect_same(shading(data, coarse).surface, shading(data, deviations, coarse).surface);
+            expect_same(shading(data).surface, shading(data, {.deviations = &deviations}).surface);
+            expect_same(shading(data, coarse).surface,
+                        shading(data, {.threshold = 0.1, .deviations = &deviations}).surface);
         } else {
             const nestgrid::Plane plane({0.4, 0.5, 0.49}, {0.3, 0.5, 0.81});
-            expect_same(slice(data, plane).surface, slice(data, plane, deviations).surface);
+            expect_same(slice(data, plane).surface,
+                        slice(data, plane, {.deviations = &deviations}).surface);
             expect_same(slice(data, plane, coarse).surface,
-                        slice(data, plane, deviations, coarse).surface);
+                        slice(data, plane, {.threshold = 0.1, .deviations = &deviations}).surface);
         }
     });
 }
@@ -361,7 +365,7 @@ TEST(DiscontinuousCells, RefuseWrongInput) {
         "a value at a corner of a leaf is not");
     const ElementDeviations deviations(data);
     grid.adapt([](const Leaf&) { return Mark::refine; });
-    EXPECT_THROW(shading(data, deviations), GridError);
+    EXPECT_THROW(shading(data, {.deviations = &deviations}), GridError);
 }
 
 TEST(DiscontinuousCells, EndsWhenProgressSaysSo) {

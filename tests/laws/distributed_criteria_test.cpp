@@ -40,17 +40,18 @@ struct DrawUnderCriteria {
     void operator()(const Grid& grid, const Field& field, const Executor& executor,
                     const Take& take) const {
         const auto draw = [&](const Criterion& s, const Bounds& bounds) {
-            take(isosurface(grid, field, 0.1, s, bounds, {.cap = true}, executor));
+            take(isosurface(grid, field, 0.1, under(s, bounds), {.cap = true}, {executor}));
         };
         const HierarchicalIndicator deviations(grid, field, NodeError::deviation, executor);
         for (const double epsilon : {0.05, 0.2, 0.6}) {
             draw(Threshold(&deviations, epsilon), deviations);
         }
         for (const double isovalue : {0.0, 0.25}) {
-            take(isosurface(grid, field, isovalue, Threshold(&deviations, 0.2), deviations,
-                            {.normals = true, .cap = isovalue > 0}, executor));
+            take(isosurface(grid, field, isovalue, under(deviations, 0.2),
+                            {.normals = true, .cap = isovalue > 0}, {executor}));
         }
-        take(isosurface(grid, field, 0.0, Exact(), deviations, {.normals = true}, executor));
+        take(isosurface(grid, field, 0.0, under(Exact(), deviations), {.normals = true},
+                        {executor}));
         const HierarchicalIndicator errors(
             grid, field, [&](const auto& leaf) { return error_of_leaf(leaf); }, executor);
         draw(Threshold(&errors, 0.7), errors);
@@ -60,7 +61,7 @@ struct DrawUnderCriteria {
         draw(Lens(&spread, distance_from_middle, {.finest = 0.05, .blend = 2}), spread);
         draw(Threshold(&spread, 0.3) && Threshold(&deviations, 0.3), spread);
         draw(Threshold(&spread, 0.1) || Threshold(&deviations, 0.3), deviations);
-        const SweptIndicator norms = norm_indicator(grid, field);
+        const SweptIndicator norms = norm_indicator({grid, field});
         draw(Threshold(&norms, 0.3), deviations);
         const SweptIndicator sizes = mesh_size(grid, Spread{.slope = 1});
         draw(Lens(&sizes, distance_from_middle, {.finest = 0.1}), deviations);
@@ -111,7 +112,8 @@ struct DrawNormals {
                     const Take& take) const {
         const engine::LeafBounds bounds(erase(grid, field));
         for (const double isovalue : {0.0, 0.2}) {
-            take(isosurface(grid, field, isovalue, Exact(), bounds, {.normals = true}, executor));
+            take(isosurface(grid, field, isovalue, under(Exact(), bounds), {.normals = true},
+                            {executor}));
         }
     }
 };

@@ -22,7 +22,8 @@ constexpr int odd_rank = 2;  // that fails
 /// What differs on one rank.
 struct Odd {
     double isovalue = 0.5;
-    IsosurfaceOptions options{.threshold = 0.01};
+    Projection projection{.threshold = 0.01};
+    IsosurfaceOptions options{};
     std::size_t most_sharers = 24;
     double scale = 1;                 ///< of its values
     double bad = 0;                   ///< at one of its nodes, where not 0
@@ -126,22 +127,20 @@ private:
         const Distributed grid(mine, ranks, odd.most_sharers);
         const DistributedField field(grid, FragileField<Real>({&mine, &values}, &step, &odd));
         step = 1;
-        std::optional<HierarchicalIndicator> indicator;
+        const Prerolls prerolls(grid, field);
         if (odd.draws_at_once) {
             // Other ranks make their prerolls; what is asked for is compared first.
             const Wide bounds;
-            isosurface(grid, field, odd.isovalue, Exact(), bounds, odd.options);
+            isosurface(grid, field, odd.isovalue, under(Exact(), bounds), odd.options);
         }
-        indicator.emplace(grid, field);
+        prerolls.choose("offset", 1, {}, {});
         step = 2;
         // Several threads tell their progress at once; one tells it now and then.
         const ThreadExecutor threads(2);
         const FragileSink sink(odd.sink_fails);
-        const Threshold s =
-            criterion_for<3>(erase(grid, field), odd.isovalue, *indicator, odd.options);
         const auto result =
-            extract_isosurfaces(grid, field, std::span(&odd.isovalue, 1), std::vector{sink}, s,
-                                *indicator, odd.options, threads);
+            extract_isosurfaces<3>(prerolls, std::span(&odd.isovalue, 1), std::vector{sink},
+                                   odd.projection, odd.options, {threads});
         if (result[0].cancelled) throw std::runtime_error("cancelled");
     }
     struct Wide final : Bounds {
@@ -178,9 +177,9 @@ TEST(DistributedFaults, NothingIsWrong) {
 TEST(DistributedFaults, RanksAskForDifferentThings) {
     expect_all_say("isovalue", {.isovalue = 0.25},
                    {"all ranks must ask for the same", "rank 0", "0.5", "rank 2", "0.25"});
-    expect_all_say("threshold", {.options = {.threshold = 0.125}},
+    expect_all_say("threshold", {.projection = {.threshold = 0.125}},
                    {"all ranks must ask for the same", "rank 2", "0.125"});
-    expect_all_say("cap", {.options = {.threshold = 0.01, .cap = true}},
+    expect_all_say("cap", {.options = {.cap = true}},
                    {"all ranks must ask for the same", "rank 2", "with caps"});
     expect_all_say("sharers", {.most_sharers = 3},
                    {"all ranks must ask for the same", "rank 2", "more than 3"});
@@ -190,11 +189,12 @@ TEST(DistributedFaults, RanksAskForDifferentThings) {
 
 TEST(DistributedFaults, OneRankAsksForWhatIsRefused) {
     expect_all_say("isovalue", {.isovalue = std::nan("")}, {"rank 2: the isovalue"});
-    expect_all_say("threshold", {.options = {.threshold = -1}}, {"rank 2: the threshold"});
+    expect_all_say("threshold", {.projection = {.threshold = -1}}, {"rank 2: the threshold"});
     expect_all_say("normals", {.options = {.normals = true, .at_nodes = true}},
                    {"rank 2: a surface with normals and vertices at nodes is not made for "
                     "distributed grids"});
-    expect_all_say("budget", {.options = {.max_triangles = 9}}, {"rank 2: a number of triangles"});
+    expect_all_say("budget", {.projection = {.max_triangles = 9}},
+                   {"rank 2: no threshold is searched"});
     expect_all_say(
         "another algorithm", {.draws_at_once = true},
         {"rank 0 asks for a preroll of offsets, factor 1, slope 0, and rank 2 for isosurfaces"});

@@ -174,17 +174,18 @@ private:
               const Executor& executor, const Take& take) const {
         for (const double epsilon : epsilons_) {
             for (const bool cap : {false, true}) {
-                const IsosurfaceOptions options{.threshold = epsilon, .cap = cap, .verify = true};
-                take(isosurface(grid, field, isovalues[0], indicator, options, executor));
+                const IsosurfaceOptions options{.cap = cap, .verify = true};
+                take(isosurface(grid, field, isovalues[0], under(indicator, epsilon), options,
+                                {executor}));
             }
         }
         const Threshold s(&indicator, epsilons_.back());
         for (const auto& result :
-             isosurfaces(grid, field, isovalues, s, indicator, {.cap = true}, executor)) {
+             isosurfaces(grid, field, isovalues, under(s, indicator), {.cap = true}, {executor})) {
             take(result);
         }
-        take(isosurface(grid, field, isovalues[1], Exact(), indicator, {}, executor));
-        take(isoband(grid, field, isovalues[0], isovalues[1], s, indicator, {}, executor));
+        take(isosurface(grid, field, isovalues[1], under(Exact(), indicator), {}, {executor}));
+        take(isoband(grid, field, isovalues[0], isovalues[1], under(s, indicator), {}, {executor}));
     }
 
     void draw_whole(bool own_keys) {

@@ -43,10 +43,10 @@ struct Scene {
 
     auto hierarchy() const { return erase(grid, field); }
     void draw(const IsosurfaceOptions& options) const {
-        isosurface(grid, field, 0.5, indicator, options);
+        isosurface(grid, field, 0.5, under(indicator, 0), options);
     }
     void draw(const Criterion& criterion, const Bounds& bounds) const {
-        isosurface(grid, field, 0.5, criterion, bounds);
+        isosurface(grid, field, 0.5, under(criterion, bounds));
     }
 };
 
@@ -73,11 +73,15 @@ struct LeafValues {
 
 const std::vector<Refused<3>> in_space{
     {"normals", [](const auto& s) { s.draw({.normals = true, .at_nodes = true}); }},
-    {"number of triangles", [](const auto& s) { s.draw({.max_triangles = 100}); }},
+    {"number of triangles",
+     [](const auto& s) { isosurface(s.grid, s.field, 0.5, {.max_triangles = 100}); }},
     {"reference coordinates", [](const auto& s) { s.draw({.reference = true}); }},
     {"finest cuts", [](const auto& s) { s.draw({.cuts = Cuts::finest}); }},
     {"bounds of positions", [](const auto& s) { s.draw({.position_bounds = &s.indicator}); }},
-    {"volume", [](const auto& s) { volume_between(s.grid, s.field, 0.25, 0.5, s.indicator); }},
+    {"volume",
+     [](const auto& s) {
+         volume_between({s.grid, s.field}, 0.25, 0.5, under(s.indicator, 0));
+     }},
     {"other bounds", [](const auto& s) { s.draw(Exact(), Wide()); }},
     {"unsaturated criteria",
      [](const auto& s) { s.draw(Unsaturated{Threshold(&s.indicator, 0.1)}, s.indicator); }},
@@ -85,12 +89,26 @@ const std::vector<Refused<3>> in_space{
      [](const auto& s) {
          s.indicator.update(s.grid, s.field, ChangedBox{{0, 0, 0}, {1, 1, 1}});
      }},
-    {"visual indicator", [](const auto& s) { visual_indicator(s.grid, s.field); }},
-    {"numerical indicator", [](const auto& s) { numerical_indicator(s.grid, s.field); }},
-    {"wavelet indicator", [](const auto& s) { wavelet_indicator(s.grid, s.field); }},
-    {"geometry indicator", [](const auto& s) { geometry_indicator(s.grid, s.field); }},
+    {"visual indicator",
+     [](const auto& s) {
+         visual_indicator({s.grid, s.field});
+     }},
+    {"numerical indicator",
+     [](const auto& s) {
+         numerical_indicator({s.grid, s.field});
+     }},
+    {"wavelet indicator",
+     [](const auto& s) {
+         wavelet_indicator({s.grid, s.field});
+     }},
+    {"geometry indicator",
+     [](const auto& s) {
+         geometry_indicator({s.grid, s.field});
+     }},
     {"cut deviations",
-     [](const auto& s) { cut_deviations(s.grid, s.field, std::array{0.5}, s.indicator); }},
+     [](const auto& s) {
+         cut_deviations({s.grid, s.field}, std::array{0.5}, s.indicator);
+     }},
     {"node levels", [](const auto& s) { NodeLevels{s.grid}; }},
     {"hanging nodes",
      [](const auto& s) { derive_hanging_nodes(erase(s.grid, ZeroField<Grid<3>>{})); }},
@@ -114,13 +132,15 @@ const std::vector<Refused<3>> in_space{
 };
 
 const std::vector<Refused<2>> in_plane{
-    {"isolines", [](const auto& s) { isolines(s.grid, s.field, std::array{0.5}, s.indicator); }},
+    {"isolines",
+     [](const auto& s) { isolines(s.grid, s.field, std::array{0.5}, under(s.indicator, 0)); }},
     {"number of triangles of a graph",
      [](const auto& s) {
-         count_triangles(s.grid, s.field, Threshold(&s.indicator, 0.1), s.indicator, 100);
+         count_triangles({s.grid, s.field}, under(s.indicator, 0.1), 100);
      }},
-    {"height field", [](const auto& s) { height_field(s.grid, s.field, 1.0, s.indicator); }},
-    {"shading", [](const auto& s) { shading(s.grid, s.field, s.indicator); }},
+    {"height field",
+     [](const auto& s) { height_field(s.grid, s.field, 1.0, under(s.indicator, 0)); }},
+    {"shading", [](const auto& s) { shading(s.grid, s.field, under(s.indicator, 0)); }},
 };
 
 /// \return what each of two ranks says

@@ -27,12 +27,11 @@ template <class Grid, class Field>
 Isosurface<3> draw(const Request& request, const Grid& grid, const Field& field,
                    const HierarchicalIndicator& indicator, const Executor& executor) {
     if (request.function == nullptr) {
-        return isosurface(grid, field, 0.0, indicator,
-                          {.threshold = request.epsilon, .at_nodes = true}, executor);
+        return isosurface(grid, field, 0.0, under(indicator, request.epsilon), {.at_nodes = true},
+                          {executor});
     }
-    if (request.epsilon < 0) return slice(grid, field, *request.function, {}, executor);
-    return slice(grid, field, *request.function, indicator, {.threshold = request.epsilon},
-                 executor);
+    if (request.epsilon < 0) return slice(grid, field, *request.function, {}, {}, {executor});
+    return slice(grid, field, *request.function, under(indicator, request.epsilon), {}, {executor});
 }
 
 /// Draws all requests.
@@ -47,7 +46,7 @@ struct DrawAll {
             take(draw(request, grid, field, indicator, executor));
         }
         for (const double threshold : {0.0, 0.3}) {
-            take(boundary_surface(grid, field, {.threshold = threshold}, executor));
+            take(boundary_surface(grid, field, {.threshold = threshold}, {}, {executor}));
         }
     }
 };

@@ -57,40 +57,45 @@ TYPED_TEST(Drawing, HasTheBitsOfItsParts) {
             const Criteria levels(prerolls, told, std::span(&zero, 1), {});
             const Criteria criteria(prerolls, told, {}, {});
             const AnyCriterion s = criteria.criterion();
-            expect_same(static_cast<const Isosurface<dimension>&>(
-                            isosurface<dimension>(prerolls, 0, projection)),
-                        isosurface<dimension>(hierarchy, 0, levels.criterion(), levels.bounds()));
+            expect_same(
+                static_cast<const Isosurface<dimension>&>(
+                    isosurface<dimension>(prerolls, 0, projection)),
+                isosurface<dimension>(hierarchy, 0, under(levels.criterion(), levels.bounds())));
             const std::vector<Point> points{{0.4, 0.3, dimension == 3 ? 0.6 : 0}};
             const bool everything = projection.draws_everything();
             expect_same_bits(probe(prerolls, points, projection).values,
-                             everything ? probe(hierarchy, points).values
-                                        : probe(hierarchy, points, s, criteria.bounds()).values,
+                             everything
+                                 ? probe(hierarchy, points).values
+                                 : probe(hierarchy, points, under(s, criteria.bounds())).values,
                              "values at points");
             if constexpr (dimension == 3) {
                 const Plane plane({0.4, 0.5, 0.5}, {1, 2, 3});
                 expect_same(slice(prerolls, plane, projection).surface,
-                            everything ? slice(hierarchy, plane).surface
-                                       : slice(hierarchy, plane, s, criteria.bounds()).surface);
+                            everything
+                                ? slice(hierarchy, plane).surface
+                                : slice(hierarchy, plane, under(s, criteria.bounds())).surface);
                 expect_same(boundary_surface(prerolls, projection).surface,
-                            everything ? boundary_surface(hierarchy).surface
-                                       : boundary_surface(hierarchy, s, criteria.bounds()).surface);
+                            everything
+                                ? boundary_surface(hierarchy).surface
+                                : boundary_surface(hierarchy, under(s, criteria.bounds())).surface);
             } else {
                 const std::vector<double> values{0, 0.1};
                 const Criteria lines(prerolls, told, values, {});
-                EXPECT_EQ(
-                    isolines(prerolls, values, projection).lines.vertices,
-                    isolines(hierarchy, values, lines.criterion(), lines.bounds()).lines.vertices);
+                EXPECT_EQ(isolines(prerolls, values, projection).lines.vertices,
+                          isolines(hierarchy, values, under(lines.criterion(), lines.bounds()))
+                              .lines.vertices);
                 expect_same(height_field(prerolls, 0.5, projection).surface,
-                            height_field(hierarchy, 0.5, s, criteria.bounds()).surface);
+                            height_field(hierarchy, 0.5, under(s, criteria.bounds())).surface);
                 expect_same(shading(prerolls, projection).surface,
-                            shading(hierarchy, s, criteria.bounds()).surface);
+                            shading(hierarchy, under(s, criteria.bounds())).surface);
             }
         }
-        expect_same(isoband<dimension>(prerolls, 0, 0.1, {.threshold = 0.1}).surface,
-                    isoband<dimension>(hierarchy, 0.0, 0.1,
-                                       Criteria(prerolls, {.threshold = 0.1}, {}, {}).criterion(),
-                                       *prerolls.bounds({}))
-                        .surface);
+        expect_same(
+            isoband<dimension>(prerolls, 0, 0.1, {.threshold = 0.1}).surface,
+            isoband<dimension>(hierarchy, 0.0, 0.1,
+                               under(Criteria(prerolls, {.threshold = 0.1}, {}, {}).criterion(),
+                                     *prerolls.bounds({})))
+                .surface);
     });
 }
 
@@ -103,7 +108,7 @@ TYPED_TEST(Drawing, IsFineInARegion) {
         const ChosenIndicator offsets = prerolls.choose("offset", 1, {}, {});
         const auto s = fine_inside(region, *offsets.indicator, 0.4, 0.01);
         const Isosurface<dimension> expected =
-            isosurface<dimension>(hierarchy, 0, s, *offsets.bounds);
+            isosurface<dimension>(hierarchy, 0, under(s, *offsets.bounds));
         expect_same(static_cast<const Isosurface<dimension>&>(
                         isosurface<dimension>(prerolls, 0, projection)),
                     expected);
@@ -124,9 +129,9 @@ TYPED_TEST(Drawing, LetsColoursFollowTheData) {
             followed.colour_tolerance = 0.01;
             const Criteria criteria(prerolls, plain, {}, {});
             const auto expect_followed = [&](Surface<3> drawn, const Surface<3>& got) {
-                split +=
-                    refine_colours(drawn, hierarchy, 0.01, criteria.criterion(), criteria.bounds())
-                        .split;
+                split += refine_colours(drawn, hierarchy, 0.01,
+                                        under(criteria.criterion(), criteria.bounds()))
+                             .split;
                 expect_same(got, drawn);
             };
             if constexpr (dimension == 3) {
@@ -149,7 +154,7 @@ TYPED_TEST(Drawing, MeasuresFromTheSurfaceOfAllData) {
             if (!std::exchange(first, false)) return;
             const Surface<3> whole = isosurface<3>(prerolls, 0, {}).surface;
             const Surface<3> drawn = isosurface<3>(prerolls, 0, {.threshold = 0.2}).surface;
-            const MeasuredError expected = measure_error(drawn, whole, hierarchy, 0.0, 1000);
+            const MeasuredError expected = measure_error(hierarchy, drawn, whole, 0.0, 1000);
             const MeasuredError measured = measure_error(prerolls, drawn, 0, 1000);
             EXPECT_EQ(measured.value.greatest, expected.value.greatest);
             EXPECT_EQ(measured.distance.rms, expected.distance.rms);
@@ -167,7 +172,7 @@ double error_of(const Surface<3>& s, const Hierarchy<Real>& hierarchy) {
         const auto of = samples_of(corners_of(s, t), 3);
         points.insert(points.end(), of.begin(), of.end());
     }
-    const ProbeResult probed = probe<Real>(hierarchy, points);
+    const ProbeResult probed = probe(hierarchy, points);
     double greatest = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (probed.found(i)) greatest = std::max(greatest, std::abs(probed.values[i]));

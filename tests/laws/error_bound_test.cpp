@@ -28,7 +28,7 @@ constexpr std::array<double, 8> all_thresholds{0, 0.01, 0.05, 0.2, 0.5, 1, 3, 1e
 
 /// The least and the greatest value at nodes of the finest grid.
 std::pair<double, double> range_of(const Hierarchy<double>& h) {
-    const Projected data(h, Exact(), 0.0);
+    const ProjectedNodes data(h, Exact(), 0.0);
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::pair<double, double> range{infinity, -infinity};
     for (const auto& [key, value] : data.values()) {
@@ -73,12 +73,12 @@ TYPED_TEST(ErrorBound, OfSurfacesHoldsAndIsWithinTheRange) {
         const double most = std::max(greatest, -least);
         for (const double threshold : all_thresholds) {
             SCOPED_TRACE(threshold);
-            const auto result = isosurface<dimension>(h, 0.0, offsets, {.threshold = threshold});
+            const auto result = isosurface<dimension>(h, 0.0, under(offsets, threshold));
             expect_bounded(result, greatest_difference(h, result.surface, 0), most);
             says_nothing = says_nothing || result.bound_says_nothing();
         }
         if (samples.name != "sphere") return;
-        const auto exact = isosurface<dimension>(h, 0.0, offsets);
+        const auto exact = isosurface<dimension>(h, 0.0, under(offsets, 0));
         EXPECT_FALSE(exact.bound_says_nothing()) << exact.error_bound << " of " << most;
     });
     EXPECT_TRUE(says_nothing) << "no bound is as large as the range";
@@ -95,7 +95,7 @@ TYPED_TEST(ErrorBound, OfSlicesHoldsAndIsWithinTheRange) {
             for (const double threshold : all_thresholds) {
                 SCOPED_TRACE(threshold);
                 const Threshold s(&offsets, threshold);
-                const Slice drawn = slice(h, plane, s, offsets);
+                const Slice drawn = slice(h, plane, under(s, offsets));
                 const ProbeResult found = probe(h, drawn.surface.vertices);
                 double worst = 0;
                 for (std::size_t v = 0; v < drawn.surface.vertices.size(); ++v) {
@@ -118,7 +118,7 @@ TYPED_TEST(ErrorBound, OfHeightsAndLinesHoldsAndIsWithinTheRange) {
             const auto [least, greatest] = range_of(h);
             for (const double threshold : all_thresholds) {
                 SCOPED_TRACE(threshold);
-                const Shading drawn = shading(h, offsets, {.threshold = threshold});
+                const Shading drawn = shading(h, under(offsets, threshold));
                 const ProbeResult found = probe(h, drawn.surface.vertices);
                 double worst = 0;
                 for (std::size_t v = 0; v < drawn.surface.vertices.size(); ++v) {
@@ -128,7 +128,7 @@ TYPED_TEST(ErrorBound, OfHeightsAndLinesHoldsAndIsWithinTheRange) {
                 }
                 expect_bounded(drawn, worst, greatest - least);
                 const double values[] = {0.0, 0.3 * greatest + 0.7 * least};
-                const Isolines lines = isolines(h, values, offsets, {.threshold = threshold});
+                const Isolines lines = isolines(h, values, under(offsets, threshold));
                 expect_bounded(lines, 0, std::max({greatest, -least, 0.7 * (greatest - least)}));
             }
         });
@@ -143,7 +143,7 @@ TYPED_TEST(ErrorBound, OfACriterionThatInsistsIsTheRange) {
         const HierarchicalIndicator offsets(h);
         const auto [least, greatest] = range_of(h);
         const Unsaturated s(Threshold(&offsets, 0.1));
-        const auto result = isosurface<dimension>(h, 0.0, s, offsets);
+        const auto result = isosurface<dimension>(h, 0.0, under(s, offsets));
         EXPECT_NEAR(result.error_bound, std::max(greatest, -least), rounding);
         EXPECT_TRUE(result.bound_says_nothing());
         expect_bounded(result, greatest_difference(h, result.surface, 0), result.range_bound);

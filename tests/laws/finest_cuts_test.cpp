@@ -77,10 +77,10 @@ TYPED_TEST(FinestCuts, LieWhereTheDataAreAtTheLevel) {
         const HierarchicalIndicator indicator(h);
         for (const double threshold : all_thresholds) {
             SCOPED_TRACE(threshold);
-            IsosurfaceOptions options{.threshold = threshold, .verify = true};
-            const auto linear = isosurface<dimension>(h, 0.0, indicator, options);
+            IsosurfaceOptions options{.verify = true};
+            const auto linear = isosurface<dimension>(h, 0.0, under(indicator, threshold), options);
             options.cuts = Cuts::finest;
-            const auto drawn = isosurface<dimension>(h, 0.0, indicator, options);
+            const auto drawn = isosurface<dimension>(h, 0.0, under(indicator, threshold), options);
             expect_closed(drawn.surface);
             if (!conforms<TypeParam>) {
                 expect_same(drawn, linear);
@@ -121,18 +121,21 @@ void expect_same_by_all_walks(const Samples& n) {
         const HierarchicalIndicator indicator(known, field);
         for (const double threshold : {0.0, 0.02, 0.2}) {
             SCOPED_TRACE(threshold);
-            const IsosurfaceOptions options{
-                .threshold = threshold * data.range, .cuts = Cuts::finest, .verify = true};
-            const auto a = isosurface(known, field, data.isovalue, indicator, options);
-            const auto b = isosurface(unknown, unknown_field, data.isovalue, indicator, options);
+            const IsosurfaceOptions options{.cuts = Cuts::finest, .verify = true};
+            const auto a = isosurface(known, field, data.isovalue,
+                                      under(indicator, threshold * data.range), options);
+            const auto b = isosurface(unknown, unknown_field, data.isovalue,
+                                      under(indicator, threshold * data.range), options);
             expect_same(a, b);
             expect_closed(a.surface);
             for (const std::size_t threads : {2U, 3U}) {
                 const ThreadExecutor executor(threads);
-                expect_same(a,
-                            isosurface(known, field, data.isovalue, indicator, options, executor));
-                expect_same(a, isosurface(unknown, unknown_field, data.isovalue, indicator, options,
-                                          executor));
+                expect_same(
+                    a, isosurface(known, field, data.isovalue,
+                                  under(indicator, threshold * data.range), options, {executor}));
+                expect_same(
+                    a, isosurface(unknown, unknown_field, data.isovalue,
+                                  under(indicator, threshold * data.range), options, {executor}));
             }
         }
     }

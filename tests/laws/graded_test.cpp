@@ -229,8 +229,7 @@ void expect_closed_surfaces() {
             const HierarchicalIndicator indicator(grid, field);
             for (const double threshold : six_thresholds) {
                 SCOPED_TRACE(samples.name + " at threshold " + std::to_string(threshold));
-                expect_closed(
-                    isosurface(grid, field, 0.0, indicator, {.threshold = threshold}).surface);
+                expect_closed(isosurface(grid, field, 0.0, under(indicator, threshold)).surface);
             }
         }
     });
@@ -249,14 +248,14 @@ void expect_linear_functions_kept() {
         const ForestField<dim> field(grid, f);
         const HierarchicalIndicator indicator(grid, field);
         const auto surface = [&](double threshold) {
-            auto result = isosurface(grid, field, 0.0, indicator, {.threshold = threshold});
+            auto result = isosurface(grid, field, 0.0, under(indicator, threshold));
             EXPECT_GT(result.surface.simplices.size(), 0U);
             EXPECT_LE(result.error_bound, 1e-14);
             for (const Point& x : result.surface.vertices) EXPECT_NEAR(f(x), 0, 1e-13);
             return result.surface.simplices.size();
         };
         const std::size_t coarse =
-            isosurface(grid, field, 0.0, indicator, {.threshold = 100}).surface.simplices.size();
+            isosurface(grid, field, 0.0, under(indicator, 100)).surface.simplices.size();
         EXPECT_EQ(surface(1e-12), coarse);
         surface(0);
     });
@@ -295,7 +294,7 @@ void expect_refused_untold(const GradedGrid<dim>& grid) {
     const Forest<dim>& untold = grid;
     const ForestField<dim> field(grid, [](const Point& x) { return x[0] + x[1] - 0.7; });
     const std::string sentence = refusal<GridError>(
-        [&] { isosurface(untold, field, 0.0, HierarchicalIndicator(untold, field)); });
+        [&] { isosurface(untold, field, 0.0, under(HierarchicalIndicator(untold, field), 0)); });
     EXPECT_EQ(sentence.find("operation constrained") != std::string::npos, grid.hanging_count() > 0)
         << sentence;
     EXPECT_EQ(check_grid(untold, field).has_value(), grid.hanging_count() > 0);
@@ -313,8 +312,7 @@ TEST(Graded, NodesThatHangAtWeightsMustBeTold) {
             const ForestField<2> field(grid, [](const Point& x) { return x[0] * x[1] - 0.2; });
             const HierarchicalIndicator indicator(grid, field);
             for (const double threshold : {0.0, 0.05, 0.2}) {
-                expect_closed(
-                    isosurface(grid, field, 0.0, indicator, {.threshold = threshold}).surface);
+                expect_closed(isosurface(grid, field, 0.0, under(indicator, threshold)).surface);
             }
         }
     }

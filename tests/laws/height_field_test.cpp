@@ -177,7 +177,7 @@ TYPED_TEST(HeightField, ConformsAndCoversTheDomainAtEveryThreshold) {
             for (const double threshold : shading_thresholds) {
                 SCOPED_TRACE(samples.name + " at threshold " + std::to_string(threshold));
                 const Threshold criterion(&indicator, threshold);
-                const Surface<3> s = shading(grid, field, criterion, indicator).surface;
+                const Surface<3> s = shading(grid, field, under(criterion, indicator)).surface;
                 expect_conforming(s, is_planar(s));
                 expect_no_vertex_on_edges(s);
                 expect_covering(s);
@@ -186,8 +186,9 @@ TYPED_TEST(HeightField, ConformsAndCoversTheDomainAtEveryThreshold) {
                 ASSERT_EQ(s.elements.size(), s.level_of.size());
                 ASSERT_EQ(s.elements.size(), s.shape_of.size());
                 EXPECT_EQ(s.element_of.back() + 1, s.elements.size());
-                const ShadingOptions flat{.threshold = threshold, .flatness = 0.01};
-                const Surface<3> centred = shading(grid, field, indicator, flat).surface;
+                const ShadingOptions flat{.flatness = 0.01};
+                const Surface<3> centred =
+                    shading(grid, field, under(indicator, threshold), flat).surface;
                 expect_conforming(centred, is_planar(s));
                 expect_covering(centred);
             }
@@ -202,8 +203,8 @@ TYPED_TEST(HeightField, LiftsTheSameVertices) {
         const auto samples = smooth_noisy_and_rounded(grid.node_positions())[0];
         const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
         const HierarchicalIndicator indicator(grid, field);
-        const auto plane = shading(grid, field, indicator, {.threshold = 0.1});
-        auto graph = height_field(grid, field, 2.5, indicator, {.threshold = 0.1});
+        const auto plane = shading(grid, field, under(indicator, 0.1));
+        auto graph = height_field(grid, field, 2.5, under(indicator, 0.1));
         expect_conforming(graph.surface, is_planar(plane.surface));
         expect_same_bits(graph.surface.attributes, plane.surface.attributes, "attributes");
         ASSERT_EQ(graph.surface.vertices.size(), plane.surface.vertices.size());
@@ -227,8 +228,8 @@ TYPED_TEST(HeightField, DrawsALinearFunctionExactly) {
         const HierarchicalIndicator indicator(grid, field);
         for (const double threshold : {-1.0, 1e-9, 0.3}) {
             const Threshold criterion(&indicator, threshold);
-            const auto plane = shading(grid, field, criterion, indicator);
-            const auto graph = height_field(grid, field, 4, criterion, indicator);
+            const auto plane = shading(grid, field, under(criterion, indicator));
+            const auto graph = height_field(grid, field, 4, under(criterion, indicator));
             EXPECT_LT(plane.error_bound, 1e-12);
             for (std::size_t v = 0; v < plane.surface.vertices.size(); ++v) {
                 const Point& x = plane.surface.vertices[v];
@@ -291,8 +292,8 @@ TYPED_TEST(HeightField, StaysWithinItsErrorBound) {
             const auto points = points_of_leaves(grid, field, indicator);
             for (const double threshold : {0.0, 0.1, 0.3}) {
                 for (const double flatness : {std::numeric_limits<double>::infinity(), 0.01}) {
-                    const auto plane = shading(grid, field, indicator,
-                                               {.threshold = threshold, .flatness = flatness});
+                    const auto plane =
+                        shading(grid, field, under(indicator, threshold), {.flatness = flatness});
                     if (!is_planar(plane.surface)) return;
                     double greatest = 0;
                     for (const auto& [x, u] : points) {
@@ -317,11 +318,11 @@ TYPED_TEST(HeightField, HasTheSameBitsFromAnyNumberOfThreads) {
         const auto samples = smooth_noisy_and_rounded(grid.node_positions())[1];
         const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
         for (const double threshold : {0.0, 0.3}) {
-            const ShadingOptions options{.threshold = threshold, .flatness = 0.1};
-            const auto alone = height_field(grid, field, 0.5, options);
+            const ShadingOptions options{.flatness = 0.1};
+            const auto alone = height_field(grid, field, 0.5, {.threshold = threshold}, options);
             for (const std::size_t threads : {2U, 3U}) {
-                expect_same(alone,
-                            height_field(grid, field, 0.5, options, ThreadExecutor(threads)));
+                expect_same(alone, height_field(grid, field, 0.5, {.threshold = threshold}, options,
+                                                {ThreadExecutor(threads)}));
             }
         }
     });
@@ -481,17 +482,17 @@ TEST(HeightFields, RefuseWrongInput) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(shading(grid, field, {.threshold = -1}), InvalidInput);
     EXPECT_THROW(shading(grid, field, {.threshold = nan}), InvalidInput);
-    EXPECT_THROW(shading(grid, field, {.flatness = -1}), InvalidInput);
+    EXPECT_THROW(shading(grid, field, {}, {.flatness = -1}), InvalidInput);
     EXPECT_THROW(height_field(grid, field, nan), InvalidInput);
     OctreeGrid<3> volume(hexahedra(1));
     const NodeField<OctreeGrid<3>, double> in_volume(volume, std::span(values).first(8));
     EXPECT_THROW(shading(volume, in_volume), InvalidInput);
     const HierarchicalIndicator indicator(grid, field);
     const Unsaturated criterion(Exact{});
-    const Shading insisted = shading(grid, field, criterion, indicator);
+    const Shading insisted = shading(grid, field, under(criterion, indicator));
     EXPECT_EQ(insisted.error_bound, insisted.range_bound);
     grid.adapt([](const Leaf&) { return Mark::refine; });
-    EXPECT_THROW(shading(grid, field, indicator), GridError);
+    EXPECT_THROW(shading(grid, field, under(indicator, 0)), GridError);
 }
 
 }  // namespace height_field_test

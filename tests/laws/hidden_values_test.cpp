@@ -88,23 +88,23 @@ Numbers everything(const Hierarchy<double>& hierarchy) {
     Numbers numbers;
     const auto draw = [&](const Criterion& criterion, const Bounds& bounds) {
         for (const double isovalue : {0.0, 0.3}) {
-            const auto result = isosurface<dim>(hierarchy, isovalue, criterion, bounds,
+            const auto result = isosurface<dim>(hierarchy, isovalue, under(criterion, bounds),
                                                 IsosurfaceOptions{.normals = true, .verify = true});
             numbers.add(result.surface);
             numbers.all.push_back(result.error_bound);
         }
         if constexpr (dim == 3) {
             const Plane plane({0.9, 0.8, 0.7}, {1, 0.5, -0.3});
-            numbers.add(slice(hierarchy, plane, criterion, bounds).surface);
+            numbers.add(slice(hierarchy, plane, under(criterion, bounds)).surface);
         } else {
-            numbers.add(height_field(hierarchy, 1.0, criterion, bounds).surface);
+            numbers.add(height_field(hierarchy, 1.0, under(criterion, bounds)).surface);
         }
         std::mt19937 random(5);
         std::vector<Point> points(200);
         for (Point& x : points) {
             for (std::size_t d = 0; d < dim; ++d) x[d] = 2 * uniform(random);
         }
-        for (const double u : probe(hierarchy, points, criterion, bounds).values) {
+        for (const double u : probe(hierarchy, points, under(criterion, bounds)).values) {
             numbers.all.push_back(std::isnan(u) ? 1e9 : u);
         }
     };
@@ -412,7 +412,7 @@ void expect_true_rows() {
         for (const double threshold : {0.0, 0.02, 0.3}) {
             SCOPED_TRACE(threshold);
             const auto draw = [&](const Holes<Sample>& of, const HierarchicalIndicator& indicator) {
-                return isosurface<3>(of, 0.3, Threshold(&indicator, threshold), indicator,
+                return isosurface<3>(of, 0.3, under(indicator, threshold),
                                      IsosurfaceOptions{.verify = true});
             };
             const auto fast = draw(holes, rows);
@@ -427,7 +427,7 @@ void expect_true_rows() {
                     {18 * uniform(random), 16 * uniform(random), 32 * uniform(random)});
             }
             const auto exact = probe(holes, points).values;
-            const auto drawn = probe(holes, points, Threshold(&rows, threshold), rows).values;
+            const auto drawn = probe(holes, points, under(rows, threshold)).values;
             std::size_t inside = 0;
             for (std::size_t k = 0; k < points.size(); ++k) {
                 ASSERT_EQ(std::isnan(exact[k]), std::isnan(drawn[k]));

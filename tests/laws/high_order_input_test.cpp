@@ -194,7 +194,8 @@ TEST_F(HighOrderInput, OtherGridsAndFieldsAreRefused) {
 TEST_F(HighOrderInput, TablesInCDrawTheSame) {
     const auto draw = [](const HighOrder& data) {
         const VirtualRefinement fine(data, {.tolerance = 0.01});
-        return isosurface<3>(fine, 0.1, fine.criterion(), fine.bounds(), {.elements = false});
+        return isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds()),
+                             {.elements = false});
     };
     const BehindTables tables(world, field);
     EXPECT_FALSE(check_hierarchy(*tables.hierarchy).has_value());
@@ -258,7 +259,7 @@ TEST_F(HighOrderInput, FurtherComponentsAreCarriedAlong) {
     const TwoComponents components{&data};
     const HighOrder both(world, components);
     const VirtualRefinement fine(both, {.tolerance = 0.02});
-    const auto result = isosurface<3>(fine, 0.1, fine.criterion(), fine.bounds());
+    const auto result = isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds()));
     ASSERT_GT(result.surface.vertices.size(), 100U);
     ASSERT_EQ(result.surface.attributes.size(), result.surface.vertices.size());
     for (const double colour : result.surface.attributes) EXPECT_NEAR(colour, 0.8, 1e-5);

@@ -120,11 +120,11 @@ TEST(HighOrderShapes, ThreadsDrawTheSameBits) {
             .levels = 2, .least_degree = 1, .greatest_degree = 5, .noise = 0.1, .seed = seed};
         const OnShapes<3> drawn(Cells::all, options, gyroid);
         const VirtualRefinement fine(drawn.data, {.tolerance = 0.2, .depth = 4});
-        const auto one = isosurface<3>(fine, 0.1, fine.criterion(), fine.bounds());
+        const auto one = isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds()));
         EXPECT_GT(one.surface.simplices.size(), 1000U);
         for (const std::size_t threads : {2, 3}) {
-            const auto more = isosurface<3>(fine, 0.1, fine.criterion(), fine.bounds(), {},
-                                            ThreadExecutor(threads));
+            const auto more = isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds()), {},
+                                            {ThreadExecutor(threads)});
             expect_same(one.surface, more.surface);
             EXPECT_EQ(one.error_bound, more.error_bound);
         }
@@ -137,19 +137,19 @@ TEST(HighOrderShapes, EveryAlgorithmDraws) {
     const VirtualRefinement fine(drawn.data, {.tolerance = 0.05, .depth = 5});
     for (const Plane& plane : {Plane({0, 0, 0}, {0, 0, 1}), Plane({0, 0, -0.3}, {0, 0, 1}),
                                Plane({0, 0, 0}, {1, 1, 0}), Plane({0.1, 0, 0}, {1, 2, 3})}) {
-        const auto drawn_slice = slice(fine, plane, fine.criterion(), fine.bounds());
+        const auto drawn_slice = slice(fine, plane, under(fine.criterion(), fine.bounds()));
         expect_closed(drawn_slice.surface);
         EXPECT_GT(drawn_slice.surface.simplices.size(), 100U);
         EXPECT_LE(drawn_slice.error_bound, (0.05 + drawn.data.jump()) * (1 + 1e-6));
     }
-    expect_closed(boundary_surface(fine, fine.criterion(), fine.bounds()).surface, true);
+    expect_closed(boundary_surface(fine, under(fine.criterion(), fine.bounds())).surface, true);
     expect_closed(drawn.surface(0.2, {0.05, 5}, {.cap = true}).surface, true);
     const OnShapes<2> flat(
         Cells::columns, WorldOptions{.levels = 3, .least_degree = 2, .greatest_degree = 5}, gyroid);
     const VirtualRefinement lines(flat.data, {.tolerance = 0.01, .depth = 6});
     const std::array<double, 3> values{-0.2, 0.1, 0.5};
-    EXPECT_GT(nestgrid::isolines(lines, std::span<const double>(values), lines.criterion(),
-                                 lines.bounds())
+    EXPECT_GT(nestgrid::isolines(lines, std::span<const double>(values),
+                                 under(lines.criterion(), lines.bounds()))
                   .lines.vertices.size(),
               100U);
 }
@@ -201,7 +201,8 @@ TEST(HighOrderShapes, ColoursOfVerticesAreThePolynomials) {
     const OnShapes<3> drawn(
         Cells::all, WorldOptions{.levels = 1, .least_degree = 3, .greatest_degree = 5}, gyroid);
     const VirtualRefinement fine(drawn.data, {.tolerance = 0.3, .depth = 5});
-    auto result = slice(fine, Plane({0.05, 0, 0}, {1, 2, 3}), fine.criterion(), fine.bounds());
+    auto result =
+        slice(fine, Plane({0.05, 0, 0}, {1, 2, 3}), under(fine.criterion(), fine.bounds()));
     const auto greatest = [&] {
         double off = 0;
         for (std::size_t v = 0; v < result.surface.vertices.size(); ++v) {
@@ -222,7 +223,7 @@ TEST(HighOrderShapes, DegreeOneIsTheHierarchyItself) {
             cells, WorldOptions{.cells = 2, .least_degree = 1, .greatest_degree = 1}, gyroid);
         const VirtualRefinement fine(drawn.data, {.tolerance = 1e-6});
         const auto plain = isosurface(drawn.world, drawn.field, 0.1);
-        const auto decorated = isosurface<3>(fine, 0.1, Exact(), fine.bounds());
+        const auto decorated = isosurface<3>(fine, 0.1, under(Exact(), fine.bounds()));
         EXPECT_GT(plain.surface.simplices.size(), 10U);
         expect_same_bits(plain.surface.vertices, decorated.surface.vertices, "vertices");
         expect_same_bits(plain.surface.simplices, decorated.surface.simplices, "triangles");

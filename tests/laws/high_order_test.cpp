@@ -166,10 +166,10 @@ TEST(HighOrder, ThreadsDrawTheSameBits) {
                 .levels = 3, .least_degree = 1, .greatest_degree = 6, .noise = 0.1, .seed = seed},
             gyroid);
         const VirtualRefinement fine(drawn.data, {.tolerance = 0.2, .depth = 4});
-        const auto one = isosurface<3>(fine, 0.1, fine.criterion(), fine.bounds());
+        const auto one = isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds()));
         for (const std::size_t threads : {2, 3}) {
-            const auto more = isosurface<3>(fine, 0.1, fine.criterion(), fine.bounds(), {},
-                                            ThreadExecutor(threads));
+            const auto more = isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds()), {},
+                                            {ThreadExecutor(threads)});
             expect_same(one.surface, more.surface);
             EXPECT_EQ(one.error_bound, more.error_bound);
             EXPECT_EQ(one.counts.limited, more.counts.limited);
@@ -182,12 +182,12 @@ TEST(HighOrder, EveryAlgorithmDraws) {
     const VirtualRefinement fine(drawn.data, {.tolerance = 0.05, .depth = 5});
     for (const Plane& plane : {Plane({0, 0, 0}, {0, 0, 1}), Plane({0, 0, 0.3}, {0, 0, 1}),
                                Plane({0, 0, 0}, {1, 1, 0}), Plane({0.1, 0, 0}, {1, 2, 3})}) {
-        const auto drawn_slice = slice(fine, plane, fine.criterion(), fine.bounds());
+        const auto drawn_slice = slice(fine, plane, under(fine.criterion(), fine.bounds()));
         expect_closed(drawn_slice.surface);
         EXPECT_GT(drawn_slice.surface.simplices.size(), 100U);
         EXPECT_LE(drawn_slice.error_bound, 0.05 + drawn.data.jump() * (1 + 1e-6));
     }
-    const auto boundary = boundary_surface(fine, fine.criterion(), fine.bounds());
+    const auto boundary = boundary_surface(fine, under(fine.criterion(), fine.bounds()));
     expect_closed(boundary.surface, true);
     const auto capped = drawn.surface(0.2, {0.05, 5}, {.cap = true});
     expect_closed(capped.surface, true);
@@ -198,9 +198,9 @@ TEST(HighOrder, EveryAlgorithmDraws) {
     const VirtualRefinement lines(flat.data, {.tolerance = 0.01, .depth = 6});
     const std::array<double, 3> values{-0.2, 0.1, 0.5};
     const auto isolines = nestgrid::isolines(lines, std::span<const double>(values),
-                                             lines.criterion(), lines.bounds());
+                                             under(lines.criterion(), lines.bounds()));
     EXPECT_GT(isolines.lines.vertices.size(), 100U);
-    const auto field = height_field(lines, 1.0, lines.criterion(), lines.bounds());
+    const auto field = height_field(lines, 1.0, under(lines.criterion(), lines.bounds()));
     const SurfaceReport report = surface_report(field.surface);
     EXPECT_EQ(report.open_edges, 0U);
     EXPECT_LE(field.error_bound, (0.01 + flat.data.jump()) * (1 + 1e-6));
@@ -211,7 +211,7 @@ TEST(HighOrder, ColoursOfSlicesAreWithinTheirBound) {
     const Drawn<3> drawn(WorldOptions{.levels = 1, .least_degree = 3, .greatest_degree = 3}, ties);
     const VirtualRefinement fine(drawn.data, {.tolerance = 0.02, .depth = 6});
     const auto result =
-        slice(fine, Plane({0.05, 0, 0}, {1, 2, 3}), fine.criterion(), fine.bounds());
+        slice(fine, Plane({0.05, 0, 0}, {1, 2, 3}), under(fine.criterion(), fine.bounds()));
     double greatest = 0;
     for (const auto& t : result.surface.simplices) {
         Point x{0, 0, 0};
@@ -234,7 +234,7 @@ TEST(HighOrder, DegreeOneIsTheHierarchyItself) {
             gyroid);
         const VirtualRefinement fine(drawn.data, {.tolerance = 1e-6});
         const auto plain = isosurface(drawn.world, drawn.field, 0.1);
-        const auto decorated = isosurface<3>(fine, 0.1, Exact(), fine.bounds());
+        const auto decorated = isosurface<3>(fine, 0.1, under(Exact(), fine.bounds()));
         EXPECT_GT(plain.surface.simplices.size(), 10U);
         expect_same_bits(plain.surface.vertices, decorated.surface.vertices, "vertices");
         expect_same_bits(plain.surface.simplices, decorated.surface.simplices, "triangles");

@@ -105,19 +105,19 @@ template <int dim>
 void expect_capped(const Hierarchy<double>& hierarchy, double isovalue, const Criterion& criterion,
                    const Bounds& bounds, Judged<dim>& judged) {
     const IsosurfaceOptions options{.normals = dim == 3, .cap = true, .verify = true};
-    const auto capped = isosurface<dim>(hierarchy, isovalue, criterion, bounds, options);
+    const auto capped = isosurface<dim>(hierarchy, isovalue, under(criterion, bounds), options);
     expect_closed_report(capped.surface);
     for (const Point& n : capped.surface.normals) EXPECT_FALSE(std::isnan(norm(n)));
-    const auto open = isosurface<dim>(hierarchy, isovalue, criterion, bounds);
+    const auto open = isosurface<dim>(hierarchy, isovalue, under(criterion, bounds));
     judged.simplices += open.surface.simplices.size();
     judged.capped += capped.surface.simplices.size() - open.surface.simplices.size();
     EXPECT_LE(capped.error_bound, capped.range_bound);
-    const auto in_threads =
-        isosurface<dim>(hierarchy, isovalue, criterion, bounds, options, ThreadExecutor(3));
+    const auto in_threads = isosurface<dim>(hierarchy, isovalue, under(criterion, bounds), options,
+                                            {ThreadExecutor(3)});
     EXPECT_EQ(in_threads.surface.simplices, capped.surface.simplices);
     EXPECT_EQ(in_threads.surface.vertices, capped.surface.vertices);
     const std::array<double, 2> isovalues{isovalue, isovalue + 0.1};
-    const auto several = isosurfaces<dim>(hierarchy, isovalues, criterion, bounds, options);
+    const auto several = isosurfaces<dim>(hierarchy, isovalues, under(criterion, bounds), options);
     EXPECT_EQ(several[0].surface.simplices, capped.surface.simplices);
     EXPECT_EQ(several[0].surface.vertices, capped.surface.vertices);
     expect_closed_report(several[1].surface);
@@ -135,8 +135,8 @@ void expect_capped(const Hierarchy<double>& hierarchy, Judged<dim>& judged) {
         SCOPED_TRACE("threshold " + std::to_string(threshold));
         const Threshold criterion(&indicator, threshold);
         expect_capped<dim>(hierarchy, 0, criterion, indicator, judged);
-        const auto all =
-            isosurface<dim>(hierarchy, indicator.least() - 1, criterion, indicator, {.cap = true});
+        const auto all = isosurface<dim>(hierarchy, indicator.least() - 1,
+                                         under(criterion, indicator), {.cap = true});
         expect_closed_report(all.surface);
         EXPECT_NEAR(enclosed(all.surface), volume, tolerance);
     }
@@ -192,12 +192,11 @@ TEST(HoleCaps, EncloseBothSides) {
         const HierarchicalIndicator of_above(above);
         const HierarchicalIndicator of_below(below);
         for (const double threshold : {0.0, 0.05, 0.5}) {
-            const double both = enclosed(isosurface<3>(above, 0.3, Threshold(&of_above, threshold),
-                                                       of_above, {.cap = true})
-                                             .surface) +
-                                enclosed(isosurface<3>(below, -0.3, Threshold(&of_below, threshold),
-                                                       of_below, {.cap = true})
-                                             .surface);
+            const double both =
+                enclosed(
+                    isosurface<3>(above, 0.3, under(of_above, threshold), {.cap = true}).surface) +
+                enclosed(
+                    isosurface<3>(below, -0.3, under(of_below, threshold), {.cap = true}).surface);
             EXPECT_NEAR(both, shown<3>(above), 1e-9);
         }
     }

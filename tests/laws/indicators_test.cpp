@@ -94,17 +94,17 @@ void with_function(const Function& f, Test&& test) {
 
 void expect_closed_surface(const Hierarchy<double>& h, const Criterion& s, const Bounds& bounds) {
     if (h.facts().dimension == 2) {
-        expect_closed(isosurface<2>(h, 0.0, s, bounds).surface);
+        expect_closed(isosurface<2>(h, 0.0, under(s, bounds)).surface);
         return;
     }
-    expect_closed(isosurface<3>(h, 0.0, s, bounds).surface);
+    expect_closed(isosurface<3>(h, 0.0, under(s, bounds)).surface);
     const Plane plane({0.5, 0.45, 0.52}, {1, 2, -1});
-    expect_closed(slice(h, plane, s, bounds).surface);
+    expect_closed(slice(h, plane, under(s, bounds)).surface);
 }
 
 ErrorBounds bounds_at_zero(const Hierarchy<double>& h, const Criterion& s, const Bounds& bounds) {
-    if (h.facts().dimension == 2) return isosurface<2>(h, 0.0, s, bounds);
-    return isosurface<3>(h, 0.0, s, bounds);
+    if (h.facts().dimension == 2) return isosurface<2>(h, 0.0, under(s, bounds));
+    return isosurface<3>(h, 0.0, under(s, bounds));
 }
 
 template <class Family>
@@ -141,13 +141,13 @@ TYPED_TEST(Indicators, DrawClosedSurfacesAloneAndCombined) {
 TYPED_TEST(Indicators, ProjectWithinTheErrorBound) {
     on_hierarchies<TypeParam>([](const Hierarchy<double>& h) {
         const HierarchicalIndicator offsets(h);
-        const Projected data(h, Exact(), 0.0);
+        const ProjectedNodes data(h, Exact(), 0.0);
         for (const Named& named : indicators(h)) {
             SCOPED_TRACE(named.name);
             std::size_t stopped = data.stopped();
             for (const double times : {0.1, 1.0, 2.0}) {
                 const Threshold s(&named.indicator, times * named.middle);
-                const Projected projected(h, s, 0.0);
+                const ProjectedNodes projected(h, s, 0.0);
                 EXPECT_EQ(projected.interpolated_corners(), 0U);
                 const ErrorBounds bounds = bounds_at_zero(h, s, offsets);
                 // On what is drawn the data are no further from the level than anywhere.
@@ -162,10 +162,10 @@ TYPED_TEST(Indicators, ProjectWithinTheErrorBound) {
 
 TYPED_TEST(Indicators, ChangeNothingAtThresholdZero) {
     on_hierarchies<TypeParam>([](const Hierarchy<double>& h) {
-        const Projected data(h, Exact(), 0.0);
+        const ProjectedNodes data(h, Exact(), 0.0);
         for (const Named& named : indicators(h)) {
             SCOPED_TRACE(named.name);
-            const Projected projected(h, Threshold(&named.indicator, 0), 0.0);
+            const ProjectedNodes projected(h, Threshold(&named.indicator, 0), 0.0);
             EXPECT_EQ(projected.difference(data), 0);
         }
     });
@@ -210,7 +210,7 @@ TYPED_TEST(Indicators, OfFoldsDependOnNoAmplitude) {
         const NodeField<typename TypeParam::Grid, double> scaled_field(grid, scaled);
         const auto h = erase(grid, field);
         const SweptIndicator eta = visual_indicator(h, {.tau = 1e-6});
-        const SweptIndicator of_scaled = visual_indicator(grid, scaled_field, {.tau = 1e-3});
+        const SweptIndicator of_scaled = visual_indicator({grid, scaled_field}, {.tau = 1e-3});
         double least = 2;
         for_each_judged_split(h, [&](const JudgedSplit& split) {
             for (const NodeKey key : split.keys) {
@@ -230,9 +230,9 @@ TYPED_TEST(Indicators, KeepPeaks) {
         values.back() = 1;
         const NodeField<typename TypeParam::Grid, double> field(grid, values);
         const auto h = erase(grid, field);
-        const Projected data(h, Exact(), 0.5);
+        const ProjectedNodes data(h, Exact(), 0.5);
         for (const Named& named : indicators(h)) {
-            const Projected projected(h, Threshold(&named.indicator, 0.9), 0.5);
+            const ProjectedNodes projected(h, Threshold(&named.indicator, 0.9), 0.5);
             EXPECT_EQ(projected.difference(data), 0) << named.name;
         }
     }
@@ -296,8 +296,9 @@ TYPED_TEST(Indicators, OfWaveletsKeepTheIntegral) {
 double position_bound(const Hierarchy<double>& h, const Criterion& s, const Bounds& bounds,
                       const Indicator& positions) {
     const IsosurfaceOptions options{.position_bounds = &positions};
-    if (h.facts().dimension == 2) return isosurface<2>(h, 0.0, s, bounds, options).position_bound;
-    return isosurface<3>(h, 0.0, s, bounds, options).position_bound;
+    if (h.facts().dimension == 2)
+        return isosurface<2>(h, 0.0, under(s, bounds), options).position_bound;
+    return isosurface<3>(h, 0.0, under(s, bounds), options).position_bound;
 }
 
 TYPED_TEST(Indicators, OfGeometryBoundTheProjectedPositions) {
@@ -313,19 +314,19 @@ TYPED_TEST(Indicators, OfGeometryBoundTheProjectedPositions) {
         expect_saturated(h, geometry);
         expect_saturated(h, bounds);
         const HierarchicalIndicator offsets(h);
-        const Projected data(h, Exact(), 0.0);
-        const Projected exact(h, Threshold(&geometry, 0), 0.0);
+        const ProjectedNodes data(h, Exact(), 0.0);
+        const ProjectedNodes exact(h, Threshold(&geometry, 0), 0.0);
         EXPECT_EQ(exact.distance_where_drawn(data), 0);
         for (const double epsilon : {0.002, 0.01, 0.03}) {
             const Threshold by_bounds(&bounds, epsilon);
-            EXPECT_LE(Projected(h, by_bounds, 0.0).distance_where_drawn(data), epsilon);
+            EXPECT_LE(ProjectedNodes(h, by_bounds, 0.0).distance_where_drawn(data), epsilon);
             const Threshold by_geometry(&geometry, epsilon);
             const Threshold by_data(&offsets, 10 * epsilon);
             const auto both = by_geometry && by_data;
             expect_closed_surface(h, both, offsets);
-            EXPECT_LE(Projected(h, by_data, 0.0).distance_where_drawn(data),
+            EXPECT_LE(ProjectedNodes(h, by_data, 0.0).distance_where_drawn(data),
                       position_bound(h, by_data, offsets, bounds));
-            EXPECT_LE(Projected(h, both, 0.0).distance_where_drawn(data),
+            EXPECT_LE(ProjectedNodes(h, both, 0.0).distance_where_drawn(data),
                       position_bound(h, both, offsets, bounds));
         }
     }
@@ -421,7 +422,7 @@ TYPED_TEST(Indicators, OfNormsAreOrderedAndCountAllComponents) {
     const SweptIndicator euclid = norm_indicator(h);
     const SweptIndicator most = norm_indicator(h, {.norm = OffsetNorm::greatest});
     const SweptIndicator of_second = norm_indicator(h, {.scales = {infinity, 2, infinity}});
-    const SweptIndicator alone = norm_indicator(grid, second_alone);
+    const SweptIndicator alone = norm_indicator({grid, second_alone});
     for (const SweptIndicator* indicator : {&sum, &euclid, &most}) expect_saturated(h, *indicator);
     for_each_judged_split(h, [&](const JudgedSplit& split) {
         for (const NodeKey key : split.keys) {
@@ -441,10 +442,10 @@ TEST(NormIndicator, RefusesScalesThatDoNotFit) {
     BisectionGrid<2> grid(triangles(1));
     const std::vector<double> values(grid.node_count(), 0.0);
     const NodeField<BisectionGrid<2>, double> field(grid, values);
-    expect_refused([&] { norm_indicator(grid, field, {.scales = {1, 1}}); }, "scales");
-    expect_refused([&] { norm_indicator(grid, field, {.scales = {0}}); }, "scale");
-    expect_refused([&] { visual_indicator(grid, field, {.tau = -1}); }, "tau");
-    expect_refused([&] { visual_indicator(grid, field, {.spread = {.factor = 0.5}}); }, "factor");
+    expect_refused([&] { norm_indicator({grid, field}, {.scales = {1, 1}}); }, "scales");
+    expect_refused([&] { norm_indicator({grid, field}, {.scales = {0}}); }, "scale");
+    expect_refused([&] { visual_indicator({grid, field}, {.tau = -1}); }, "tau");
+    expect_refused([&] { visual_indicator({grid, field}, {.spread = {.factor = 0.5}}); }, "factor");
 }
 
 TEST(VisualIndicator, RefusesValuesThatAreNotFinite) {
@@ -453,9 +454,9 @@ TEST(VisualIndicator, RefusesValuesThatAreNotFinite) {
     std::vector<double> values(grid.node_count(), 0.0);
     values.back() = std::numeric_limits<double>::quiet_NaN();
     const NodeField<BisectionGrid<2>, double> field(grid, values);
-    expect_refused([&] { visual_indicator(grid, field); }, "not a usable number");
-    expect_refused([&] { numerical_indicator(grid, field); }, "not a usable number");
-    expect_refused([&] { norm_indicator(grid, field); }, "not a usable number");
+    expect_refused([&] { visual_indicator({grid, field}); }, "not a usable number");
+    expect_refused([&] { numerical_indicator({grid, field}); }, "not a usable number");
+    expect_refused([&] { norm_indicator({grid, field}); }, "not a usable number");
 }
 
 }  // namespace indicators_test

@@ -317,8 +317,8 @@ template <class Grid>
 void expect_isolines_of_grid(const Grid& grid, const NodalSamples& samples, double threshold) {
     const NodeField<Grid, double> field(grid, samples.values);
     const std::array values{0.0, samples.values[samples.values.size() / 2], 0.0317};
-    const IsosurfaceOptions options{.threshold = threshold, .verify = true};
-    const Isolines result = isolines(grid, field, values, options);
+    const IsosurfaceOptions options{.verify = true};
+    const Isolines result = isolines(grid, field, values, {.threshold = threshold}, options);
     const Polylines& lines = result.lines;
     const bool flat = is_flat(grid);
     for (std::size_t i = 0; i < lines.count(); ++i) {
@@ -329,7 +329,7 @@ void expect_isolines_of_grid(const Grid& grid, const NodalSamples& samples, doub
     std::vector<PointPair> segments;
     std::size_t ends = 0;
     for (const double value : values) {
-        const auto of = isosurface(grid, field, value, options).surface;
+        const auto of = isosurface(grid, field, value, {.threshold = threshold}, options).surface;
         ends += of.boundary.size();
         for (const auto& [a, b] : of.simplices) {
             segments.push_back({of.vertices[a], of.vertices[b]});
@@ -342,9 +342,10 @@ void expect_isolines_of_grid(const Grid& grid, const NodalSamples& samples, doub
         return std::ranges::find(values, value) - values.begin();
     }));
     const Isolines capped =
-        isolines(grid, field, values, {.threshold = threshold, .cap = true, .verify = true});
+        isolines(grid, field, values, {.threshold = threshold}, {.cap = true, .verify = true});
     EXPECT_EQ(count_open(capped.lines), 0U);
-    const Isolines threaded = isolines(grid, field, values, options, ThreadExecutor(3));
+    const Isolines threaded =
+        isolines(grid, field, values, {.threshold = threshold}, options, {ThreadExecutor(3)});
     expect_equal(threaded.lines, lines);
     EXPECT_EQ(threaded.error_bound, result.error_bound);
 }

@@ -34,7 +34,7 @@ TYPED_TEST(IsosurfacesWithin, KeepTheDistanceThereAndBack) {
             const NodeField<typename TypeParam::Grid, double> field(grid, samples.values);
             const auto h = erase(grid, field);
             const HierarchicalIndicator indicator(h);
-            const auto whole = isosurface<3>(h, 0.0, Exact{}, indicator).surface;
+            const auto whole = isosurface<3>(h, 0.0, under(Exact{}, indicator)).surface;
             if (whole.simplices.empty()) return;
             // Criteria that promise nothing: all is as coarse as it can be, or hardly so.
             const double range = indicator.greatest() - indicator.least();
@@ -48,7 +48,7 @@ TYPED_TEST(IsosurfacesWithin, KeepTheDistanceThereAndBack) {
                     };
                     const IsosurfaceWithin kept = draw(SequentialExecutor{});
                     const Surface<3>& drawn = kept.isosurface.surface;
-                    const MeasuredError error = measure_error(drawn, whole, h, 0.0, 2000);
+                    const MeasuredError error = measure_error(h, drawn, whole, 0.0, 2000);
                     EXPECT_LE(error.distance.greatest, distance * (1 + rounding));
                     EXPECT_LE(error.back.greatest, distance * (1 + rounding));
                     EXPECT_EQ(kept.rounds == 0, kept.points == 0);
@@ -67,14 +67,15 @@ TEST(IsosurfacesWithinDistances, LoseNoPeak) {
     values[(7 * 17 + 9) * 17 + 13] = 1;
     const LatticeField field(grid, std::span<const float>(values));
     const HierarchicalIndicator indicator(grid, field);
-    const auto whole = isosurface(grid, field, 0.0, Exact{}, indicator).surface;
+    const auto whole = isosurface(grid, field, 0.0, under(Exact{}, indicator)).surface;
     const Threshold coarse(&indicator, 100);
     const IsosurfaceOptions options{.cuts = Cuts::finest};
-    const auto lost = isosurface(grid, field, 0.0, coarse, indicator, options).surface;
-    EXPECT_GT(measure_error(lost, whole, grid, field, 0.0, 20000).back.greatest, 5);
-    const auto kept = isosurface_within(grid, field, 0.0, {whole, 0.5}, coarse, indicator, options);
+    const auto lost = isosurface(grid, field, 0.0, under(coarse, indicator), options).surface;
+    EXPECT_GT(measure_error({grid, field}, lost, whole, 0.0, 20000).back.greatest, 5);
+    const auto kept =
+        isosurface_within(erase(grid, field), 0.0, {whole, 0.5}, coarse, indicator, options);
     const MeasuredError error =
-        measure_error(kept.isosurface.surface, whole, grid, field, 0.0, 20000);
+        measure_error({grid, field}, kept.isosurface.surface, whole, 0.0, 20000);
     EXPECT_LE(std::max(error.distance.greatest, error.back.greatest), 0.5);
     EXPECT_LT(kept.isosurface.surface.simplices.size(), whole.simplices.size() / 8);
     EXPECT_GT(kept.rounds, 0);
@@ -86,13 +87,13 @@ TEST(IsosurfacesWithinDistances, EndWhereProgressSaysSo) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = i * i % 7 < 3 ? 1 : -1;
     const LatticeField field(grid, std::span<const float>(values));
     const HierarchicalIndicator indicator(grid, field);
-    const auto whole = isosurface(grid, field, 0.0, Exact{}, indicator).surface;
+    const auto whole = isosurface(grid, field, 0.0, under(Exact{}, indicator)).surface;
     const Threshold coarse(&indicator, 100);
     int told = 0;
     const auto draw = [&](int most) {
         told = 0;
         const auto goes_on = [&](const TraversalCounts&) { return ++told < most; };
-        return isosurface_within(grid, field, 0.0, {whole, 0.5}, coarse, indicator,
+        return isosurface_within(erase(grid, field), 0.0, {whole, 0.5}, coarse, indicator,
                                  {.progress = goes_on});
     };
     EXPECT_FALSE(draw(1 << 30).isosurface.cancelled);
@@ -133,20 +134,20 @@ TEST(IsosurfacesWithinDistances, AreRefusedWhereNothingKeepsThem) {
     const HierarchicalIndicator indicator(grid, field);
     const Threshold any(&indicator, 1);
     const auto at = [&](double value) {
-        return isosurface(grid, field, value, Exact{}, indicator).surface;
+        return isosurface(grid, field, value, under(Exact{}, indicator)).surface;
     };
     const Surface<3> whole = at(1.5);
     for (const double distance : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
         expect_refused(
             [&] {
-                isosurface_within(grid, field, 1.5, {whole, distance}, any, indicator);
+                isosurface_within(erase(grid, field), 1.5, {whole, distance}, any, indicator);
             },
             "not a positive number");
     }
     const Surface<3> other = at(3.5);
     expect_refused(
         [&] {
-            isosurface_within(grid, field, 1.5, {other, 0.5}, any, indicator);
+            isosurface_within(erase(grid, field), 1.5, {other, 0.5}, any, indicator);
         },
         "another surface");
 }

@@ -154,7 +154,7 @@ TYPED_TEST(Lenses, KeepWhatIsLargerThanTheFinestInTheDomain) {
 template <class Grid, class Field>
 void expect_sound(const Grid& grid, const Field& field, const Criterion& criterion,
                   const HierarchicalIndicator& indicator) {
-    const auto result = isosurface(grid, field, 0.0, criterion, indicator, {.verify = true});
+    const auto result = isosurface(grid, field, 0.0, under(criterion, indicator), {.verify = true});
     expect_closed(result.surface);
     const auto found = probe(grid, field, result.surface.vertices);
     for (std::size_t i = 0; i < result.surface.vertices.size(); ++i) {
@@ -165,7 +165,7 @@ void expect_sound(const Grid& grid, const Field& field, const Criterion& criteri
         const Plane oblique({0.4, 0.5, 0.45}, {0.2, 0.3, 0.9});
         const Plane through_nodes({0.5, 0.5, 0.5}, {1, 1, 0});
         for (const Plane& plane : {oblique, through_nodes}) {
-            const auto slice = nestgrid::slice(grid, field, plane, criterion, indicator);
+            const auto slice = nestgrid::slice(grid, field, plane, under(criterion, indicator));
             expect_closed(slice.surface);
             for (const Point& x : slice.surface.vertices) EXPECT_NEAR(plane.value(x), 0, 1e-12);
         }
@@ -220,8 +220,8 @@ TYPED_TEST(Lenses, BlendedByOneAreNotBlended) {
         const HierarchicalIndicator indicator(grid, field);
         const SweptIndicator size = mesh_size(grid, {.factor = 1, .slope = 0.5});
         const Lens lens(&size, domains(), {.finest = 0.15, .blend = 1});
-        const auto expected = isosurface(grid, field, 0.0, lens, indicator);
-        const auto blended = isosurface(grid, field, 0.0, InWeights(lens), indicator);
+        const auto expected = isosurface(grid, field, 0.0, under(lens, indicator));
+        const auto blended = isosurface(grid, field, 0.0, under(InWeights(lens), indicator));
         EXPECT_EQ(blended.surface.vertices, expected.surface.vertices);
         EXPECT_EQ(blended.surface.simplices, expected.surface.simplices);
     });
@@ -324,7 +324,7 @@ TEST(Lens, IsSaturatedWhereNodesAreCurvedAndHang) {
                 EXPECT_EQ(count_violations(hierarchy, nullptr, by_offset), 0U);
                 for (const Lens* lens : {&by_size, &by_offset}) {
                     const auto drawn =
-                        isosurface(grid, field, 0.0, *lens, indicator, {.verify = true});
+                        isosurface(grid, field, 0.0, under(*lens, indicator), {.verify = true});
                     expect_closed(drawn.surface);
                 }
             }
@@ -341,7 +341,7 @@ TEST(Lens, HoldsNowhereOutsideTheDomain) {
     const SweptIndicator size = mesh_size(grid, {.slope = 0.5});
     for (const Point& centre : {Point{3, 4, 5}, Point{13, 19, 10}}) {
         const Lens lens(&size, Ball{centre, 1}, {.finest = 2});
-        const auto result = isosurface(grid, field, data.isovalue, lens, indicator);
+        const auto result = isosurface(grid, field, data.isovalue, under(lens, indicator));
         expect_closed(result.surface);
         EXPECT_GT(result.surface.simplices.size(), 0U);
     }

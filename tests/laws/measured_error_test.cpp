@@ -60,24 +60,24 @@ TYPED_TEST(MeasuredErrors, LieBelowBoundsAndAreSymmetric) {
             const auto h = erase(grid, field);
             const HierarchicalIndicator indicator(h, NodeError::deviation);
             const auto whole = isosurface<3>(h, 0.0).surface;
-            const MeasuredError none = measure_error(whole, whole, h, 0.0, 500);
+            const MeasuredError none = measure_error(h, whole, whole, 0.0, 500);
             EXPECT_LE(std::max(none.distance.greatest, none.back.greatest), rounding);
             const double range = indicator.greatest() - indicator.least();
             for (const double part : {0.0, 0.1, 0.3}) {
-                const auto drawn = isosurface<3>(h, 0.0, indicator, {.threshold = part * range});
-                const MeasuredError error = measure_error(drawn.surface, whole, h, 0.0, 500);
+                const auto drawn = isosurface<3>(h, 0.0, under(indicator, part * range));
+                const MeasuredError error = measure_error(h, drawn.surface, whole, 0.0, 500);
                 EXPECT_LE(error.value.greatest,
                           drawn.error_bound * (1 + rounding) + cut_distance * range);
                 for (const Measured& m : {error.value, error.distance, error.back}) {
                     EXPECT_LE(m.mean, m.rms * (1 + rounding));
                     EXPECT_LE(m.rms, m.greatest * (1 + rounding));
                 }
-                const MeasuredError turned = measure_error(whole, drawn.surface, h, 0.0, 500);
+                const MeasuredError turned = measure_error(h, whole, drawn.surface, 0.0, 500);
                 expect_equal(error.distance, turned.back);
                 expect_equal(error.back, turned.distance);
                 for (const int threads : {2, 3}) {
                     const MeasuredError same =
-                        measure_error(drawn.surface, whole, h, 0.0, 500, ThreadExecutor(threads));
+                        measure_error(h, drawn.surface, whole, 0.0, 500, {ThreadExecutor(threads)});
                     expect_equal(error.value, same.value);
                     expect_equal(error.distance, same.distance);
                     expect_equal(error.back, same.back);
@@ -147,15 +147,19 @@ TEST(MeasuredErrors, OfNothingAreInfinite) {
     Surface<3> triangle;
     triangle.vertices = {{1, 1, 1}, {2, 1, 1}, {1, 2, 1}};
     triangle.simplices = {{0, 1, 2}};
-    const MeasuredError error = measure_error({}, triangle, grid, field, 0.5);
+    const MeasuredError error = measure_error({grid, field}, Surface<3>{}, triangle, 0.5);
     EXPECT_EQ(error.distance.greatest, 0);
     EXPECT_EQ(error.back.greatest, std::numeric_limits<double>::infinity());
-    const MeasuredError turned = measure_error(triangle, {}, grid, field, 0.5);
+    const MeasuredError turned = measure_error({grid, field}, triangle, Surface<3>{}, 0.5);
     EXPECT_EQ(turned.value.greatest, 0.5);
     EXPECT_EQ(turned.value.mean, 0.5);
     EXPECT_EQ(turned.distance.mean, std::numeric_limits<double>::infinity());
-    expect_refused([&] { measure_error(triangle, triangle, grid, field, 0.5, 0); }, "no point");
-    expect_refused([&] { measure_error(triangle, triangle, grid, field, std::nan("")); }, "finite");
+    expect_refused([&] { measure_error({grid, field}, triangle, triangle, 0.5, 0); }, "no point");
+    expect_refused(
+        [&] {
+            measure_error({grid, field}, triangle, triangle, std::nan(""));
+        },
+        "finite");
 }
 
 }  // namespace measured_error_test

@@ -96,13 +96,15 @@ TYPED_TEST(Normals, OfIsosurfacesAgreeWithTheirTriangles) {
                 SCOPED_TRACE(threshold);
                 for (const bool cap : {false, true}) {
                     SCOPED_TRACE(cap ? "cap" : "");
-                    IsosurfaceOptions options{.threshold = threshold, .normals = true, .cap = cap};
-                    expect_nothing_behind(isosurface(grid, field, 0.0, offsets, options).surface,
-                                          cuts_of(samples));
+                    IsosurfaceOptions options{.normals = true, .cap = cap};
+                    expect_nothing_behind(
+                        isosurface(grid, field, 0.0, under(offsets, threshold), options).surface,
+                        cuts_of(samples));
                     SCOPED_TRACE("at nodes");
                     options.at_nodes = true;
-                    expect_nothing_behind(isosurface(grid, field, 0.0, offsets, options).surface,
-                                          CutPlaces::near_nodes);
+                    expect_nothing_behind(
+                        isosurface(grid, field, 0.0, under(offsets, threshold), options).surface,
+                        CutPlaces::near_nodes);
                 }
             }
         });
@@ -120,10 +122,11 @@ TYPED_TEST(Normals, OfBandsAndSlicesAgreeWithTheirTriangles) {
                 SCOPED_TRACE(threshold);
                 const Threshold s(&offsets, threshold);
                 const IsosurfaceOptions options{.normals = true};
-                expect_nothing_behind(isoband(grid, field, -0.1, 0.2, s, offsets, options).surface,
-                                      CutPlaces::near_nodes);
+                expect_nothing_behind(
+                    isoband(grid, field, -0.1, 0.2, under(s, offsets), options).surface,
+                    CutPlaces::near_nodes);
                 const auto drawn =
-                    slices(grid, field, {{&plane, &sphere}, {0.0}}, s, offsets, options);
+                    slices({grid, field}, {{&plane, &sphere}, {0.0}}, under(s, offsets), options);
                 for (const Slice& slice : drawn) {
                     expect_nothing_behind(slice.surface, CutPlaces::near_nodes);
                 }
@@ -145,11 +148,11 @@ void expect_nothing_behind_on_lattice() {
             SCOPED_TRACE(threshold);
             for (const bool at_nodes : {false, true}) {
                 SCOPED_TRACE(at_nodes ? "at nodes" : "");
-                const IsosurfaceOptions options{
-                    .threshold = threshold * data.range, .normals = true, .at_nodes = at_nodes};
-                expect_nothing_behind(
-                    isosurface(grid, field, data.isovalue, offsets, options).surface,
-                    CutPlaces::near_nodes);
+                const IsosurfaceOptions options{.normals = true, .at_nodes = at_nodes};
+                expect_nothing_behind(isosurface(grid, field, data.isovalue,
+                                                 under(offsets, threshold * data.range), options)
+                                          .surface,
+                                      CutPlaces::near_nodes);
             }
         }
     }
@@ -210,13 +213,14 @@ TEST(Normals, AreTheSameInSinksAndFromAnyNumberOfThreads) {
     const Threshold s(&offsets, 0.2 * data.range);
     for (const bool at_nodes : {false, true}) {
         const IsosurfaceOptions options{.normals = true, .elements = false, .at_nodes = at_nodes};
-        const auto plain = isosurface(grid, field, data.isovalue, s, offsets, options).surface;
+        const auto plain =
+            isosurface(grid, field, data.isovalue, under(s, offsets), options).surface;
         expect_in_front(plain);
         for (const std::size_t threads : {1U, 4U}) {
             const double isovalues[] = {data.isovalue};
             Surface<3> all;
-            extract_isosurfaces(grid, field, isovalues, std::vector{Collected(all)}, s, offsets,
-                                options, ThreadExecutor(threads));
+            extract_isosurfaces(grid, field, isovalues, std::vector{Collected(all)},
+                                under(s, offsets), options, {ThreadExecutor(threads)});
             nestgrid_test::expect_same_bits(all.normals, plain.normals, "normals");
             nestgrid_test::expect_same_bits(all.simplices, plain.simplices, "simplices");
         }

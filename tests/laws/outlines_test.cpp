@@ -131,9 +131,9 @@ TYPED_TEST(OutlinesOn, IsosurfacesLieInFacesOfElements) {
             const NodeField<std::decay_t<decltype(grid)>, double> field(grid, samples.values);
             for (const double threshold : {0.0, 0.1, 1.0}) {
                 for (const bool cap : {false, true}) {
-                    const IsosurfaceOptions options{
-                        .threshold = threshold, .normals = true, .cap = cap, .reference = true};
-                    const auto surface = isosurface(grid, field, 0.0, options).surface;
+                    const IsosurfaceOptions options{.normals = true, .cap = cap, .reference = true};
+                    const auto surface =
+                        isosurface(grid, field, 0.0, {.threshold = threshold}, options).surface;
                     expect_outlines(surface);
                     within += expect_in_faces(surface);
                 }

@@ -89,9 +89,9 @@ TYPED_TEST(Projections, AreSaturatedByEveryIndicatorOfTheList) {
                     const Criteria criteria(prerolls, projection, level, {});
                     EXPECT_TRUE(criteria.at(0.1).saturated());
                     for (const double threshold : {0.05, 0.5}) {
-                        const auto drawn =
-                            isosurface(grid, fields[1], 0.0, criteria.at(threshold),
-                                       criteria.bounds(), IsosurfaceOptions{.verify = true});
+                        const auto drawn = isosurface(
+                            grid, fields[1], 0.0, under(criteria.at(threshold), criteria.bounds()),
+                            IsosurfaceOptions{.verify = true});
                         expect_closed(drawn.surface);
                     }
                 }
@@ -118,16 +118,16 @@ TYPED_TEST(Projections, DrawWhatTheirPartsDraw) {
                                     .lens = LensRequest{ball, 0.1, LensOptions{}.coarsest, 0.25}};
         const Criteria criteria(prerolls, projection, {}, {});
         const auto hierarchy = erase(grid, field);
-        const auto expected = isosurface<dimension>(hierarchy, 0.0, parts, offsets);
+        const auto expected = isosurface<dimension>(hierarchy, 0.0, under(parts, offsets));
         const auto drawn =
-            isosurface<dimension>(hierarchy, 0.0, criteria.criterion(), criteria.bounds());
+            isosurface<dimension>(hierarchy, 0.0, under(criteria.criterion(), criteria.bounds()));
         expect_same(expected.surface, drawn.surface);
         EXPECT_EQ(expected.error_bound, drawn.error_bound);
         const Criteria plain(prerolls, Projection{.threshold = 0.1}, {}, {});
         const Threshold threshold(&bounds, 0.1);
-        expect_same(
-            isosurface<dimension>(hierarchy, 0.0, threshold, bounds).surface,
-            isosurface<dimension>(hierarchy, 0.0, plain.criterion(), plain.bounds()).surface);
+        expect_same(isosurface<dimension>(hierarchy, 0.0, under(threshold, bounds)).surface,
+                    isosurface<dimension>(hierarchy, 0.0, under(plain.criterion(), plain.bounds()))
+                        .surface);
     });
 }
 
@@ -176,7 +176,7 @@ TYPED_TEST(Projections, OfTimesBetweenFramesAreSumsOfTheFrames) {
             moment->field().visit([&](const auto& hierarchy) {
                 constexpr int dimension = std::decay_t<decltype(grid)>::dimension;
                 const auto drawn = isosurface<dimension>(
-                    hierarchy, 0.0, Threshold(chosen.indicator.get(), 0.1), *chosen.bounds);
+                    hierarchy, 0.0, under(Threshold(chosen.indicator.get(), 0.1), *chosen.bounds));
                 expect_closed(drawn.surface);
             });
         }

@@ -30,9 +30,9 @@ void expect_probes(const Grid& grid, const Field& field, double threshold) {
     const Threshold criterion(&indicator, threshold);
     const auto stopped = stopped_elements(grid, field, criterion, indicator.hanging());
     const Expected in = inside(stopped, 1000, 1);
-    expect_values(probe(grid, field, in.points, criterion, indicator), in, stopped);
+    expect_values(probe(grid, field, in.points, under(criterion, indicator)), in, stopped);
     const Expected on = between(stopped);
-    expect_values(probe(grid, field, on.points, criterion, indicator), on, stopped);
+    expect_values(probe(grid, field, on.points, under(criterion, indicator)), on, stopped);
     const auto leaves = stopped_elements(grid, field, Exact{}, indicator.hanging());
     const Expected finest = inside(leaves, 300, 2);
     expect_values(probe(grid, field, finest.points), finest, leaves);
@@ -179,12 +179,12 @@ TEST(ProbeCases, RefuseWhatCannotBeProbed) {
     expect_refused([&] { probe_line(grid, field, {0, 0, 0}, {1, 1, 0}, 1); }, "two points");
     const HierarchicalIndicator indicator(grid, field);
     const auto fine = std::span(points).first(1);
-    EXPECT_TRUE(probe(grid, field, fine, Exact{}, indicator).found(0));
+    EXPECT_TRUE(probe(grid, field, fine, under(Exact{}, indicator)).found(0));
     EXPECT_TRUE(probe(grid, field, std::span<const Point>{}).values.empty());
     grid.adapt([](const Leaf&) { return Mark::refine; });
     const std::vector<double> finer_values = sample_nodes(grid, wave);
     const NodeField<OctreeGrid<2>, double> finer(grid, finer_values);
-    EXPECT_NE(refusal<GridError>([&] { probe(grid, finer, fine, Exact{}, indicator); }), "");
+    EXPECT_NE(refusal<GridError>([&] { probe(grid, finer, fine, under(Exact{}, indicator)); }), "");
 }
 
 }  // namespace probe_cases_test

@@ -30,9 +30,9 @@ TYPED_TEST(Probes, AreWhatTheStoppedElementsInterpolate) {
             const Threshold criterion(&indicator, threshold);
             const auto stopped = stopped_elements(grid, field, criterion, indicator.hanging());
             const Expected in = inside(stopped, 1000, 5);
-            expect_values_inside(probe(grid, field, in.points, criterion, indicator), in);
+            expect_values_inside(probe(grid, field, in.points, under(criterion, indicator)), in);
             const Expected on = between(stopped);
-            expect_values(probe(grid, field, on.points, criterion, indicator), on, stopped);
+            expect_values(probe(grid, field, on.points, under(criterion, indicator)), on, stopped);
         }
     });
 }
@@ -60,7 +60,7 @@ TYPED_TEST(Probes, FindALinearFunctionAtEveryThreshold) {
         const std::vector<Point> points = inside(leaves, 1000, 7).points;
         for (const double threshold : {0.0, 0.1, 1.0}) {
             const Threshold criterion(&indicator, threshold);
-            const auto result = probe(grid, field, points, criterion, indicator);
+            const auto result = probe(grid, field, points, under(criterion, indicator));
             for (std::size_t i = 0; i < points.size(); ++i) {
                 EXPECT_NEAR(result.values[i], f(points[i]), exact);
             }
@@ -108,8 +108,8 @@ TYPED_TEST(Probes, DoNotDependOnTheOrderOfPoints) {
         std::shuffle(order.begin(), order.end(), random);
         std::vector<Point> shuffled;
         for (const std::size_t i : order) shuffled.push_back(points[i]);
-        const auto expected = probe(grid, field, points, criterion, indicator);
-        const auto result = probe(grid, field, shuffled, criterion, indicator);
+        const auto expected = probe(grid, field, points, under(criterion, indicator));
+        const auto result = probe(grid, field, shuffled, under(criterion, indicator));
         for (std::size_t i = 0; i < order.size(); ++i) {
             EXPECT_EQ(result.values[i], expected.values[order[i]]);
             EXPECT_EQ(result.level[i], expected.level[order[i]]);
@@ -156,7 +156,7 @@ TYPED_TEST(Probes, GoDownOnceBetweenElements) {
                 const Expected on = between(leaves);
                 for (std::size_t i = 0; i < on.points.size(); i += 1 + on.points.size() / 500) {
                     const auto point = std::span(on.points).subspan(i, 1);
-                    const ProbeResult result = probe(grid, field, point, Exact{}, indicator);
+                    const ProbeResult result = probe(grid, field, point, under(Exact{}, indicator));
                     EXPECT_LE(result.counts.calls, static_cast<std::uint64_t>(result.level[0]) + 1)
                         << text_of(point[0]);
                 }
@@ -181,7 +181,7 @@ TYPED_TEST(Probes, AllocateForLevelsAndNotForElements) {
             const auto allocations = [&](std::size_t count) {
                 const std::vector<Point> points = inside(leaves, count, 12).points;
                 const std::size_t before = allocation_count();
-                EXPECT_TRUE(probe(grid, field, points, Exact{}, indicator).found(0));
+                EXPECT_TRUE(probe(grid, field, points, under(Exact{}, indicator)).found(0));
                 return allocation_count() - before;
             };
             const std::size_t few = allocations(500);

@@ -77,12 +77,12 @@ inline void expect_saturated(const Hierarchy<double>& hierarchy, const Indicator
 }
 
 /// The projection with a criterion, at all nodes of the hierarchy.
-class Projected final : public engine::Visitor<double> {
+class ProjectedNodes final : public engine::Visitor<double> {
 public:
     using View = engine::ElementView<double>;
 
     /// \param isovalue elements that have it between their corners are drawn
-    Projected(const Hierarchy<double>& hierarchy, const Criterion& criterion, double isovalue)
+    ProjectedNodes(const Hierarchy<double>& hierarchy, const Criterion& criterion, double isovalue)
         : hierarchy_{&hierarchy},
           criterion_{&criterion},
           isovalue_{isovalue},
@@ -103,7 +103,7 @@ public:
     std::size_t interpolated_corners() const { return interpolated_corners_; }
 
     /// The greatest difference of component 0 to that of another projection.
-    double difference(const Projected& other) const {
+    double difference(const ProjectedNodes& other) const {
         double greatest = 0;
         for (const auto& [key, value] : values_) {
             greatest = std::max(greatest, std::abs(value - other.values_.at(key)));
@@ -111,7 +111,7 @@ public:
         return greatest;
     }
     /// The same at the nodes in and around drawn elements.
-    double difference_where_drawn(const Projected& other) const {
+    double difference_where_drawn(const ProjectedNodes& other) const {
         double greatest = 0;
         for (const auto& [key, value] : values_where_drawn_) {
             greatest = std::max(greatest, std::abs(value - other.values_.at(key)));
@@ -119,7 +119,7 @@ public:
         return greatest;
     }
     /// The greatest distance of these nodes to where another projection has them.
-    double distance_where_drawn(const Projected& other) const {
+    double distance_where_drawn(const ProjectedNodes& other) const {
         double greatest = 0;
         for (const auto& [key, value] : values_where_drawn_) {
             greatest = std::max(greatest, norm(positions_.at(key) - other.positions_.at(key)));

@@ -78,15 +78,15 @@ double greatest_difference(const Surface<3>& surface, Probe&& probe) {
 }
 
 /// Refines the colours of a surface, and expects what it promises.
-/// \param with the criterion and the bounds that the surface was drawn with, or nothing
+/// \param projection that the surface was drawn with
 /// \return the number of sides that were split
-template <class Grid, class Field, class... With>
+template <class Grid, class Field>
 std::size_t expect_refined(Surface<3> surface, const Grid& grid, const Field& field,
-                           const With&... with) {
+                           const Projection& projection = {}) {
     constexpr double tolerance = 0.05;
     const Surface<3> before = surface;
     const SurfaceReport report = surface_report(before);
-    const ColourRefinement refined = refine_colours(surface, grid, field, tolerance, with...);
+    const ColourRefinement refined = refine_colours(surface, {grid, field}, tolerance, projection);
     expect_closed(surface);
     EXPECT_LE(refined.miss, tolerance / 2.2);
     EXPECT_EQ(surface.vertices.size(), before.vertices.size() + refined.split);
@@ -94,7 +94,7 @@ std::size_t expect_refined(Surface<3> surface, const Grid& grid, const Field& fi
     EXPECT_NEAR(surface_report(surface).area, report.area, 1e-12 * (1 + report.area));
     if (is_affine(grid)) {
         const auto probe_all = [&](std::span<const Point> x) {
-            return probe(grid, field, x, with...);
+            return probe(grid, field, x, projection);
         };
         EXPECT_LE(greatest_difference(surface, probe_all), tolerance + 1e-12);
     }
@@ -114,16 +114,16 @@ TYPED_TEST(RefinedColours, FollowTheDataWithinATolerance) {
         for (const double threshold : {0.0, 0.1, 1.0}) {
             if (jumps<TypeParam> && threshold > 0) continue;
             SCOPED_TRACE(threshold);
-            const Threshold s(&indicator, threshold);
+            const Projection projection = under(indicator, threshold);
             if constexpr (TypeParam::Grid::dimension == 2) {
-                split += expect_refined(shading(grid, field, s, indicator).surface, grid, field, s,
-                                        indicator);
+                split += expect_refined(shading(grid, field, projection).surface, grid, field,
+                                        projection);
             } else {
                 const Plane oblique({0.4, 0.5, 0.49}, {0.3, 0.5, 0.81});
-                split += expect_refined(slice(grid, field, oblique, s, indicator).surface, grid,
-                                        field, s, indicator);
-                split += expect_refined(boundary_surface(grid, field, s, indicator).surface, grid,
-                                        field, s, indicator);
+                split += expect_refined(slice(grid, field, oblique, projection).surface, grid,
+                                        field, projection);
+                split += expect_refined(boundary_surface(grid, field, projection).surface, grid,
+                                        field, projection);
             }
         }
         if constexpr (TypeParam::Grid::dimension == 3) {
@@ -147,7 +147,7 @@ TYPED_TEST(RefinedColours, LeaveALinearFunctionAlone) {
         } else {
             surface = slice(grid, field, Plane({0.4, 0.5, 0.49}, {0.3, 0.5, 0.81})).surface;
         }
-        EXPECT_EQ(refine_colours(surface, grid, field, 1e-9).split, 0U);
+        EXPECT_EQ(refine_colours(surface, {grid, field}, 1e-9).split, 0U);
         expect_colours(surface, f);
     }
 }
@@ -163,8 +163,9 @@ TEST(RefinedColours, TakeTheSurfaceOnceDrawn) {
     const Plane plane({0.4, 0.5, 0.49}, {0.3, 0.5, 0.81});
     const double tolerance = 0.001;
     // [refine_colours]
-    Surface<3> surface = slice(grid, field, plane, s, indicator).surface;
-    const ColourRefinement refined = refine_colours(surface, grid, field, tolerance, s, indicator);
+    Surface<3> surface = slice(grid, field, plane, under(s, indicator)).surface;
+    const ColourRefinement refined =
+        refine_colours(surface, {grid, field}, tolerance, under(s, indicator));
     // [refine_colours]
     EXPECT_GT(refined.split, 0U);
     for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
@@ -183,8 +184,9 @@ TEST(RefinedColours, FollowTheDataOnIsosurfaces) {
     }
     const FiveAtNodes field(grid, std::move(values));
     const HierarchicalIndicator indicator(grid, field);
-    Surface<3> surface = isosurface(grid, field, 0.0, indicator, {.normals = true}).surface;
-    EXPECT_GT(refine_colours(surface, grid, field, 1e-4).split, 0U);
+    Surface<3> surface =
+        isosurface(grid, field, 0.0, under(indicator, 0), {.normals = true}).surface;
+    EXPECT_GT(refine_colours(surface, {grid, field}, 1e-4).split, 0U);
     expect_closed(surface);
     ASSERT_EQ(surface.attributes.size(), 4 * surface.vertices.size());
     for (const Point& n : surface.normals) EXPECT_NEAR(norm(n), 1, 1e-12);
@@ -241,7 +243,9 @@ TEST(RefinedColours, AreRefusedWhereTheyMakeNoSense) {
     const std::vector<double> values = sample_nodes(grid, [](const Point& x) { return x[0]; });
     const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
     Surface<3> surface = slice(grid, field, Plane({0.5, 0.5, 0.3}, {0, 0, 1})).surface;
-    const auto refine = [&](double tolerance) { refine_colours(surface, grid, field, tolerance); };
+    const auto refine = [&](double tolerance) {
+        refine_colours(surface, {grid, field}, tolerance);
+    };
     expect_refused([&] { refine(0); }, "tolerance of colours is not a positive number");
     expect_refused([&] { refine(std::nan("")); }, "tolerance of colours");
     surface.attributes.resize(2 * surface.vertices.size());
@@ -252,7 +256,7 @@ TEST(RefinedColours, AreRefusedWhereTheyMakeNoSense) {
     surface.reference.resize(3 * surface.simplices.size());
     expect_refused([&] { refine(1); }, "reference coordinates");
     Surface<3> empty;
-    EXPECT_EQ(refine_colours(empty, grid, field, 1).split, 0U);
+    EXPECT_EQ(refine_colours(empty, {grid, field}, 1).split, 0U);
 }
 
 }  // namespace refine_colours_test

@@ -116,7 +116,7 @@ void expect_sound(const Forest<dim>& forest, std::mt19937& random) {
     ASSERT_FALSE(violation) << violation->sentence;
     const HierarchicalIndicator indicator(forest, field);
     for (const double threshold : {0.0, 0.2, 0.6}) {
-        expect_closed(isosurface(forest, field, 0.0, indicator, {.threshold = threshold}).surface);
+        expect_closed(isosurface(forest, field, 0.0, under(indicator, threshold)).surface);
     }
 }
 

@@ -68,7 +68,7 @@ std::vector<double> corners(const Hierarchy<double>& h, const HierarchicalIndica
     std::vector<Corners<dimension>> sinks;
     sinks.emplace_back(result, batches);
     extract_isosurfaces<dimension>(h, std::span<const double>(&isovalue, 1), std::move(sinks),
-                                   Threshold{&indicator, threshold}, indicator);
+                                   under(Threshold{&indicator, threshold}, indicator));
     return result;
 }
 
@@ -105,8 +105,8 @@ TYPED_TEST(Shortcuts, APlainThresholdDecidesAsAnyCriterion) {
         for (const double threshold : {0.0, 0.02, 0.2, 0.7}) {
             if (threshold < indicator.least_stop()) continue;
             const Threshold plain(&indicator, threshold);
-            const auto a = isosurface<dimension>(h, isovalue, plain, indicator);
-            const auto b = isosurface<dimension>(h, isovalue, Disguised(plain), indicator);
+            const auto a = isosurface<dimension>(h, isovalue, under(plain, indicator));
+            const auto b = isosurface<dimension>(h, isovalue, under(Disguised(plain), indicator));
             expect_same(a.surface, b.surface);
             EXPECT_EQ(a.counts.calls, b.counts.calls);
             EXPECT_EQ(a.counts.visited, b.counts.visited);
@@ -133,8 +133,9 @@ TYPED_TEST(Shortcuts, NoElementStopsBelowTheLeastStop) {
         for (const double threshold : {0.0, least / 2, std::nextafter(least, 0)}) {
             if (!(threshold < indicator.least_stop())) continue;
             const Threshold below(&indicator, threshold);
-            const auto once = isosurface<dimension>(h, isovalue, below, indicator);
-            const auto twice = isosurface<dimension>(h, isovalue, Disguised(below), indicator);
+            const auto once = isosurface<dimension>(h, isovalue, under(below, indicator));
+            const auto twice =
+                isosurface<dimension>(h, isovalue, under(Disguised(below), indicator));
             EXPECT_EQ(sorted_simplices(once.surface), sorted_simplices(twice.surface));
             EXPECT_EQ(once.counts.extracted, twice.counts.extracted);
         }

@@ -92,7 +92,8 @@ TYPED_TEST(Slices, TakeEachPointOfThePlaneOnce) {
                     SCOPED_TRACE(std::string(plane.name) + " at threshold " +
                                  std::to_string(threshold));
                     const Plane at(plane.through, plane.normal);
-                    const Slice slice = nestgrid::slice(grid, field, at, criterion, indicator);
+                    const Slice slice =
+                        nestgrid::slice(grid, field, at, under(criterion, indicator));
                     expect_plane(slice.surface, plane, is_affine(grid));
                 }
             }
@@ -160,7 +161,8 @@ TYPED_TEST(Slices, AreClosedOnCurvedFunctions) {
                 for (const LevelFunction* f : {static_cast<const LevelFunction*>(&round),
                                                static_cast<const LevelFunction*>(&large),
                                                static_cast<const LevelFunction*>(&upright)}) {
-                    expect_closed(nestgrid::slice(grid, field, *f, criterion, indicator).surface);
+                    expect_closed(
+                        nestgrid::slice(grid, field, *f, under(criterion, indicator)).surface);
                 }
             }
         });
@@ -185,13 +187,15 @@ TYPED_TEST(Slices, AreTheSameTogetherAndByThreads) {
             const HierarchicalIndicator indicator(grid, field);
             const Threshold criterion(&indicator, 0.1);
             const auto together =
-                slices(grid, field, {{&first, &second}, {0.0}}, criterion, indicator);
-            const auto threaded = slices(grid, field, {{&first, &second}, {0.0}}, criterion,
-                                         indicator, {}, ThreadExecutor(3));
+                slices({grid, field}, {{&first, &second}, {0.0}}, under(criterion, indicator));
+            const auto threaded = slices({grid, field}, {{&first, &second}, {0.0}},
+                                         under(criterion, indicator), {}, {ThreadExecutor(3)});
             ASSERT_EQ(together.size(), 3U);
             for (std::size_t i = 0; i < 3; ++i) expect_same(together[i], threaded[i]);
-            expect_same_triangles(together[0], slice(grid, field, first, criterion, indicator));
-            expect_same_triangles(together[1], slice(grid, field, second, criterion, indicator));
+            expect_same_triangles(together[0],
+                                  slice(grid, field, first, under(criterion, indicator)));
+            expect_same_triangles(together[1],
+                                  slice(grid, field, second, under(criterion, indicator)));
         }
     }
 }
@@ -219,15 +223,16 @@ TYPED_TEST(Slices, VisitFewerElementsWithPositionBounds) {
                 const Threshold criterion(&indicator, threshold);
                 std::size_t drawn = 0;
                 for (const LevelFunction* at : functions) {
-                    const Slice all = slice(h, *at, criterion, indicator);
-                    const Slice few = slice(h, *at, criterion, indicator, bounded);
+                    const Slice all = slice(h, *at, under(criterion, indicator));
+                    const Slice few = slice(h, *at, under(criterion, indicator), bounded);
                     expect_same_triangles(all, few);
                     EXPECT_LE(few.counts.calls, all.counts.calls);
                     drawn += few.surface.simplices.empty() ? 0 : 1;
                 }
                 EXPECT_GT(drawn, 90U);
-                EXPECT_LT(slice(h, *functions[1], criterion, indicator, bounded).counts.calls,
-                          slice(h, *functions[1], criterion, indicator).counts.calls);
+                EXPECT_LT(
+                    slice(h, *functions[1], under(criterion, indicator), bounded).counts.calls,
+                    slice(h, *functions[1], under(criterion, indicator)).counts.calls);
             }
         }
     }

@@ -101,8 +101,9 @@ TYPED_TEST(SplitBoundsOf, DoNotDependOnTheNumberOfThreads) {
 TYPED_TEST(SplitBoundsOf, GiveTheSurfaceOfAPreroll) {
     for_each_hierarchy<TypeParam>(54, [](const auto& hierarchy, auto dimension) {
         const HierarchicalIndicator indicator(hierarchy);
-        const auto expected = isosurface<dimension>(hierarchy, 0, Exact{}, indicator);
-        const auto found = isosurface<dimension>(hierarchy, 0, Exact{}, SplitBounds(hierarchy));
+        const auto expected = isosurface<dimension>(hierarchy, 0, under(Exact{}, indicator));
+        const auto found =
+            isosurface<dimension>(hierarchy, 0, under(Exact{}, SplitBounds(hierarchy)));
         expect_same(found.surface, expected.surface);
         EXPECT_EQ(found.error_bound, expected.error_bound);
         EXPECT_LE(found.counts.visited, expected.counts.visited);

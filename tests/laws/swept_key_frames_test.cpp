@@ -158,8 +158,9 @@ TYPED_TEST(SweptTime, DrawsClosedSurfacesWithinTheirBounds) {
             const SweptKeyFrames at = frames.at(weights);
             const KeyFrames bounds(frames.pointers(frames.offsets), weights);
             for (const double threshold : {0.0, 0.05, 0.4}) {
-                const auto drawn = isosurface(*frames.grid, frames.between(weights), 0.0,
-                                              Threshold(&at, threshold), bounds, {.verify = true});
+                const auto drawn =
+                    isosurface(*frames.grid, frames.between(weights), 0.0,
+                               under(Threshold(&at, threshold), bounds), {.verify = true});
                 expect_closed(drawn.surface);
             }
         }
@@ -172,7 +173,7 @@ TEST(SweptTime, RefusesWhatIsNoFrames) {
     const LatticeBisection<2> grid({.samples = {5, 5}});
     const std::vector<float> values(25, 1.0F);
     const LatticeField field(grid, std::span<const float>(values));
-    const SweptIndicator indicator = numerical_indicator(grid, field);
+    const SweptIndicator indicator = numerical_indicator({grid, field});
     const std::array<float, 2> two{0.5F, 0.5F};
     const std::array<float, 1> none{std::numeric_limits<float>::quiet_NaN()};
     EXPECT_NE(refusal<InvalidInput>([&] { SweptKeyFrames({&indicator}, two); }), "");

@@ -37,12 +37,12 @@ TEST(TimeBudgets, AreKeptByAThresholdNextToTheLeast) {
         const auto hierarchy = erase(grid, field);
         const double middle = (indicator.least() + indicator.greatest()) / 2;
         const std::size_t finest =
-            isosurface(grid, field, middle, at(0), indicator).surface.simplices.size();
+            isosurface(grid, field, middle, under(at(0), indicator)).surface.simplices.size();
         ASSERT_GT(finest, 100U);
         for (const std::uint64_t budget : {finest / 5, finest / 2}) {
             const TriangleBudget best = find_threshold<3>(hierarchy, middle, indicator, budget);
             const auto triangles = [&](double threshold) {
-                return isosurface(grid, field, middle, at(threshold), indicator)
+                return isosurface(grid, field, middle, under(at(threshold), indicator))
                     .surface.simplices.size();
             };
             EXPECT_EQ(triangles(best.threshold), best.triangles);
@@ -50,13 +50,13 @@ TEST(TimeBudgets, AreKeptByAThresholdNextToTheLeast) {
             EXPECT_GT(triangles(best.threshold * (1 - 1.0 / 128)), budget);
         }
         const std::size_t finest_slice =
-            slice(grid, field, plane, at(0), indicator).surface.simplices.size();
+            slice(grid, field, plane, under(at(0), indicator)).surface.simplices.size();
         for (const std::uint64_t budget : {finest_slice / 2, 2 * finest_slice}) {
             const TriangleBudget best = find_threshold(hierarchy, plane, at, indicator, budget);
             EXPECT_LE(best.triangles, budget);
-            EXPECT_LE(
-                slice(grid, field, plane, at(best.threshold), indicator).surface.simplices.size(),
-                best.triangles);
+            EXPECT_LE(slice(grid, field, plane, under(at(best.threshold), indicator))
+                          .surface.simplices.size(),
+                      best.triangles);
         }
     }
 }

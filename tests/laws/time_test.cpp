@@ -194,8 +194,8 @@ template <class Frames>
 auto surface_at(const Frames& frames, std::span<const float> weights, double threshold,
                 double isovalue = 0) {
     const KeyFrames indicator = frames.key_frames(weights);
-    return isosurface(frames.grid(), frames.between(weights), isovalue,
-                      Threshold(&indicator, threshold), indicator, {.verify = true});
+    return isosurface(frames.grid(), frames.between(weights), isovalue, under(indicator, threshold),
+                      {.verify = true});
 }
 
 TYPED_TEST(Time, DrawsClosedSurfacesAndSlices) {
@@ -206,9 +206,8 @@ TYPED_TEST(Time, DrawsClosedSurfacesAndSlices) {
                 if constexpr (TypeParam::Grid::dimension == 3) {
                     const KeyFrames indicator = frames.key_frames(weights);
                     const Plane plane({0.4, 0.5, 0.49}, {0.3, 0.5, 0.81});
-                    const Slice slice =
-                        nestgrid::slice(frames.grid(), frames.between(weights), plane,
-                                        Threshold(&indicator, threshold), indicator);
+                    const Slice slice = nestgrid::slice(frames.grid(), frames.between(weights),
+                                                        plane, under(indicator, threshold));
                     expect_closed(slice.surface);
                 }
             }
@@ -255,8 +254,8 @@ TYPED_TEST(Time, IsAFrameAtItsTimeToTheLastBit) {
             EXPECT_EQ(indicator.greatest(), own.greatest());
             for (const double threshold : {0.0, 0.02, 0.3}) {
                 const IsosurfaceOptions options{.verify = true};
-                const auto expected = isosurface(frames.grid(), frames.field(i), 0.0,
-                                                 Threshold(&own, threshold), own, options);
+                const auto expected =
+                    isosurface(frames.grid(), frames.field(i), 0.0, under(own, threshold), options);
                 expect_same(surface_at(frames, weights, threshold), expected);
             }
         }
@@ -334,9 +333,9 @@ TYPED_TEST(Time, DoesNotDependOnThreads) {
             const KeyFrames indicator = frames.key_frames(weights);
             const Threshold s(&indicator, 0.03);
             const auto alone =
-                isosurface(frames.grid(), frames.between(weights), 0.0, s, indicator);
-            const auto threaded = isosurface(frames.grid(), frames.between(weights), 0.0, s,
-                                             indicator, {}, ThreadExecutor(3));
+                isosurface(frames.grid(), frames.between(weights), 0.0, under(s, indicator));
+            const auto threaded = isosurface(frames.grid(), frames.between(weights), 0.0,
+                                             under(s, indicator), {}, {ThreadExecutor(3)});
             expect_same(threaded.surface, alone.surface);
             EXPECT_EQ(threaded.error_bound, alone.error_bound);
         }
@@ -351,9 +350,9 @@ TYPED_TEST(Time, IsSetAnewWithoutAPreroll) {
         for (const auto& weights : some_weights(random)) {
             indicator.set_weights(weights);
             field.set_weights(weights);
-            expect_same(isosurface(frames.grid(), field, 0.0, Threshold(&indicator, 0.02),
-                                   indicator, {.verify = true}),
-                        surface_at(frames, weights, 0.02));
+            expect_same(
+                isosurface(frames.grid(), field, 0.0, under(indicator, 0.02), {.verify = true}),
+                surface_at(frames, weights, 0.02));
         }
     });
 }
@@ -466,8 +465,8 @@ TYPED_TEST(TimeOfVolumes, AreThoseOfTheirSamples) {
         EXPECT_EQ(looser, 0U);
         const IsosurfaceOptions options{.normals = true};
         const Threshold s(&indicator, 0.02);
-        const auto drawn = isosurface(frames.grid, field, 0.4, s, indicator, options);
-        const auto same = isosurface(frames.grid, expected, 0.4, s, indicator, options);
+        const auto drawn = isosurface(frames.grid, field, 0.4, under(s, indicator), options);
+        const auto same = isosurface(frames.grid, expected, 0.4, under(s, indicator), options);
         expect_closed(drawn.surface);
         expect_same_bits(drawn.surface.vertices, same.surface.vertices, "vertices");
         ASSERT_EQ(drawn.surface.normals.size(), same.surface.normals.size());

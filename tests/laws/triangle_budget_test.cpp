@@ -87,13 +87,13 @@ void for_each_way(const Grid& grid, const Field& field, Test&& test) {
         SCOPED_TRACE(name);
         test([&](double threshold) { return Blended(&indicator, threshold, factor); });
     };
-    of("visual", visual_indicator(grid, field));
-    of("numerical", numerical_indicator(grid, field));
-    of("wavelet", wavelet_indicator(grid, field));
+    of("visual", visual_indicator({grid, field}));
+    of("numerical", numerical_indicator({grid, field}));
+    of("wavelet", wavelet_indicator({grid, field}));
     blended("offset, blended", HierarchicalIndicator(grid, field, Spread{.factor = 1.5}), 1.5);
     const Spread twice{.factor = 2};
-    blended("visual, blended", visual_indicator(grid, field, {.spread = twice}), 2);
-    blended("numerical, blended", numerical_indicator(grid, field, {.spread = twice}), 2);
+    blended("visual, blended", visual_indicator({grid, field}, {.spread = twice}), 2);
+    blended("numerical, blended", numerical_indicator({grid, field}, {.spread = twice}), 2);
     const HierarchicalIndicator offsets(grid, field);
     of("offset", offsets);
     const SweptIndicator size = mesh_size(grid, {.slope = 0.5});
@@ -124,7 +124,7 @@ TYPED_TEST(TriangleBudgets, AreKeptUnderEveryCriterion) {
         for_each_way(grid, field, [&](const auto& criterion_at) {
             expect_kept(
                 [&](double threshold) {
-                    return isosurface(grid, field, 0.0, criterion_at(threshold), bounds)
+                    return isosurface(grid, field, 0.0, under(criterion_at(threshold), bounds))
                         .surface.simplices.size();
                 },
                 [&](std::uint64_t budget) {
@@ -140,12 +140,13 @@ void expect_counted(const Hierarchy<Real>& hierarchy, SliceRequest request,
                     const Criterion& criterion, const Bounds& bounds, std::size_t count,
                     const IsosurfaceOptions& options) {
     const auto counted = [&](std::uint64_t most) {
-        return count_triangles(hierarchy, request, criterion, bounds, most, options);
+        return count_triangles(hierarchy, request, under(criterion, bounds), most, options);
     };
     EXPECT_EQ(counted(count), count);
     EXPECT_TRUE(count == 0 || !counted(count - 1));
     request.isovalues = {0.0};
-    count += isosurface<3>(hierarchy, 0, criterion, bounds, options).surface.simplices.size();
+    count +=
+        isosurface<3>(hierarchy, 0, under(criterion, bounds), options).surface.simplices.size();
     EXPECT_EQ(counted(count), count);
     EXPECT_TRUE(count == 0 || !counted(count - 1));
 }
@@ -167,12 +168,12 @@ TYPED_TEST(TriangleBudgets, AreKeptBySlicesAndBoundaries) {
                 expect_kept(
                     [&](double threshold) {
                         std::size_t count = 0;
-                        extract_slices(grid, field, {{f}}, std::vector{Counter(count)},
-                                       criterion_at(threshold), bounds, options);
+                        extract_slices({grid, field}, {{f}}, std::vector{Counter(count)},
+                                       under(criterion_at(threshold), bounds), options);
                         expect_counted(hierarchy, {{f}}, criterion_at(threshold), bounds, count,
                                        options);
                         const auto merged =
-                            slice(grid, field, *f, criterion_at(threshold), bounds, options);
+                            slice(grid, field, *f, under(criterion_at(threshold), bounds), options);
                         EXPECT_LE(merged.surface.simplices.size(), count);
                         return count;
                     },
@@ -198,21 +199,23 @@ TYPED_TEST(TriangleBudgets, AreKeptByHeightsAndShadings) {
                     expect_kept(
                         [&](double threshold) {
                             const auto s = criterion_at(threshold);
-                            const auto flat = shading(grid, field, s, bounds, options);
-                            const auto lifted = height_field(grid, field, 3, s, bounds, options);
+                            const auto flat = shading(grid, field, under(s, bounds), options);
+                            const auto lifted =
+                                height_field(grid, field, 3, under(s, bounds), options);
                             const std::size_t count = flat.surface.simplices.size();
                             EXPECT_EQ(lifted.surface.simplices.size(), count);
                             for (const std::uint64_t most : {count - 1, count}) {
-                                const auto counted = count_triangles(grid, field, s, bounds, most,
-                                                                     options, ThreadExecutor(2));
+                                const auto counted =
+                                    count_triangles({grid, field}, under(s, bounds), most, options,
+                                                    {ThreadExecutor(2)});
                                 EXPECT_EQ(counted.has_value(), most == count);
                                 EXPECT_EQ(counted.value_or(count), count);
                             }
                             return count;
                         },
                         [&](std::uint64_t budget) {
-                            return find_shading_threshold(grid, field, criterion_at, bounds, budget,
-                                                          options);
+                            return find_shading_threshold(erase(grid, field), criterion_at, bounds,
+                                                          budget, options);
                         });
                 });
             }
@@ -232,8 +235,8 @@ void expect_closed_within_budgets() {
     const detail::Everywhere everywhere;
     for_each_way(grid, field, [&](const auto& criterion_at) {
         const auto draw = [&](double threshold) {
-            const auto s = isosurface(grid, field, data.isovalue, criterion_at(threshold), bounds,
-                                      {.cap = true});
+            const auto s = isosurface(grid, field, data.isovalue,
+                                      under(criterion_at(threshold), bounds), {.cap = true});
             expect_closed(s.surface, true);
             return s.surface.simplices.size();
         };
@@ -242,13 +245,14 @@ void expect_closed_within_budgets() {
                                      {.cap = true});
         });
         const std::size_t finest =
-            boundary_surface(grid, field, criterion_at(0), bounds).surface.simplices.size();
+            boundary_surface(grid, field, under(criterion_at(0), bounds)).surface.simplices.size();
         for (const std::size_t budget : {finest / 8, finest / 2, finest}) {
             try {
                 const TriangleBudget best = find_threshold(hierarchy, everywhere, criterion_at,
                                                            bounds, budget, {.cap = true});
                 expect_closed(
-                    boundary_surface(grid, field, criterion_at(best.threshold), bounds).surface,
+                    boundary_surface(grid, field, under(criterion_at(best.threshold), bounds))
+                        .surface,
                     true);
             } catch (const InvalidInput&) {
                 EXPECT_LT(budget, finest);
@@ -270,14 +274,14 @@ TEST(LeastThreshold, IsOneOfAnythingThatCounts) {
     const LatticeField field(grid, std::span<const float>(data.values));
     const double isovalue = data.isovalue;
     const HierarchicalIndicator bounds(grid, field);
-    const SweptIndicator jumps = numerical_indicator(grid, field, {.spread = {.factor = 1.5}});
+    const SweptIndicator jumps = numerical_indicator({grid, field}, {.spread = {.factor = 1.5}});
     const Plane plane({16, 16, 15.3}, {0.1, 0.2, 1});
     const auto hierarchy = erase(grid, field);
     for (const std::uint64_t budget : {3000U, 6000U}) {
         // [least_threshold]
         const auto count = [&](double threshold, std::uint64_t most) {
             return count_triangles(hierarchy, {{&plane}, {isovalue}},
-                                   Blended(&jumps, threshold, 1.5), bounds, most);
+                                   under(Blended(&jumps, threshold, 1.5), bounds), most);
         };
         const TriangleBudget found = least_threshold(count, 1.0, budget);
         // [least_threshold]
@@ -297,23 +301,23 @@ TEST(LeastThreshold, EndsWhereProgressCancels) {
     const HierarchicalIndicator indicator(grid, field);
     const auto at = [&](double threshold) { return Threshold(&indicator, threshold); };
     const std::uint64_t finest =
-        isosurface(grid, field, data.isovalue, indicator).surface.simplices.size();
+        isosurface(grid, field, data.isovalue, under(indicator, 0)).surface.simplices.size();
     const std::uint64_t budget = finest / 2;
     int cancelled = 0;
     for (int calls = 0; calls < 20; ++calls) {
         int left = calls;
-        const IsosurfaceOptions options{.max_triangles = budget,
-                                        .progress = [&](const auto&) { return left-- > 0; }};
+        const IsosurfaceOptions options{.progress = [&](const auto&) { return left-- > 0; }};
         const TriangleBudget found =
-            find_threshold(grid, field, data.isovalue, at, indicator, budget, options);
+            find_threshold<3>(erase(grid, field), data.isovalue, at, indicator, budget, options);
         cancelled += found.cancelled ? 1 : 0;
         EXPECT_LE(found.triangles, budget);
-        const auto drawn = isosurface(grid, field, data.isovalue, at(found.threshold), indicator);
+        const auto drawn =
+            isosurface(grid, field, data.isovalue, under(at(found.threshold), indicator));
         EXPECT_LE(drawn.surface.simplices.size(), budget);
         left = calls;
-        EXPECT_LE(
-            isosurface(grid, field, data.isovalue, indicator, options).surface.simplices.size(),
-            budget);
+        EXPECT_LE(isosurface(grid, field, data.isovalue, {.max_triangles = budget}, options)
+                      .surface.simplices.size(),
+                  budget);
     }
     EXPECT_GT(cancelled, 3);
 }

@@ -45,10 +45,18 @@ TYPED_TEST(UnusableValues, AreRefusedWithTheirPlace) {
             std::vector<std::function<void()>> uses{
                 [&] { isosurface(grid, field, 0.5); },
                 [&] { HierarchicalIndicator(grid, field, NodeError::deviation); },
-                [&] { norm_indicator(grid, field); },
-                [&] { numerical_indicator(grid, field); },
-                [&] { visual_indicator(grid, field); },
-                [&] { wavelet_indicator(grid, field); },
+                [&] {
+                    norm_indicator({grid, field});
+                },
+                [&] {
+                    numerical_indicator({grid, field});
+                },
+                [&] {
+                    visual_indicator({grid, field});
+                },
+                [&] {
+                    wavelet_indicator({grid, field});
+                },
             };
             if constexpr (Grid::dimension == 2) {
                 uses.push_back([&] { height_field(grid, field, 1.0); });

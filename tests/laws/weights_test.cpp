@@ -36,10 +36,10 @@ TYPED_TEST(Weights, DrawClosedSurfaces) {
         const HierarchicalIndicator indicator(grid, field, Spread{.factor = 1.5});
         for (const double epsilon : {0.003, 0.03, 0.3}) {
             const Blended blended(&indicator, epsilon, 1.5);
-            expect_closed(isosurface(grid, field, 0.0, blended, indicator).surface);
+            expect_closed(isosurface(grid, field, 0.0, under(blended, indicator)).surface);
             const Threshold other(&indicator, epsilon / 2);
-            expect_closed(isosurface(grid, field, 0.0, blended && other, indicator).surface);
-            expect_closed(isosurface(grid, field, 0.0, blended || other, indicator).surface);
+            expect_closed(isosurface(grid, field, 0.0, under(blended && other, indicator)).surface);
+            expect_closed(isosurface(grid, field, 0.0, under(blended || other, indicator)).surface);
         }
     });
 }
@@ -48,8 +48,9 @@ TYPED_TEST(Weights, OfOneOrNothingAreAThreshold) {
     on_refined_grids<TypeParam>(12, [](const auto& grid, const auto& field) {
         const HierarchicalIndicator indicator(grid, field);
         const Threshold threshold(&indicator, 0.03);
-        const auto expected = isosurface(grid, field, 0.0, threshold, indicator);
-        const auto blended = isosurface(grid, field, 0.0, Blended(&indicator, 0.03, 1), indicator);
+        const auto expected = isosurface(grid, field, 0.0, under(threshold, indicator));
+        const auto blended =
+            isosurface(grid, field, 0.0, under(Blended(&indicator, 0.03, 1), indicator));
         EXPECT_EQ(blended.surface.vertices, expected.surface.vertices);
         EXPECT_EQ(blended.surface.simplices, expected.surface.simplices);
     });
@@ -85,7 +86,8 @@ TYPED_TEST(Weights, MoveSurfacesOnSimplicesContinuously) {
             const NodeField<Grid, double> field(grid, values);
             const HierarchicalIndicator indicator(grid, field, Spread{.factor = 1.5});
             const auto at = [&](double epsilon) {
-                return isosurface(grid, field, 0.0, Blended(&indicator, epsilon, 1.5), indicator)
+                return isosurface(grid, field, 0.0,
+                                  under(Blended(&indicator, epsilon, 1.5), indicator))
                     .surface;
             };
             const double step = 1e-4;
@@ -119,7 +121,8 @@ TEST(WeightsOnCurvedGrids, MovePositionsContinuously) {
             moved = std::max(moved, moves.position);
             // Nodes lie at most 0.06 sqrt(3) from their interpolants.
             EXPECT_LE(moves.position, c / (c - 1) * 0.02 * 0.06 * std::sqrt(3));
-            expect_closed(isosurface(grid, field, 0.0, s, indicator, {.verify = true}).surface);
+            expect_closed(
+                isosurface(grid, field, 0.0, under(s, indicator), {.verify = true}).surface);
             before = std::move(after);
         }
         EXPECT_GT(moved, 0);
@@ -132,8 +135,9 @@ TYPED_TEST(Weights, AreRefusedWithoutTheFactor) {
     const auto values = sample_nodes(grid, [](const Point& x) { return to_sphere(x, 3); });
     const NodeField<std::decay_t<decltype(grid)>, double> field(grid, values);
     const HierarchicalIndicator indicator(grid, field);
-    expect_refused([&] { isosurface(grid, field, 0.0, Blended(&indicator, 0.1, 1.5), indicator); },
-                   "not saturated");
+    expect_refused(
+        [&] { isosurface(grid, field, 0.0, under(Blended(&indicator, 0.1, 1.5), indicator)); },
+        "not saturated");
     expect_refused([&] { HierarchicalIndicator(grid, field, Spread{.factor = 0.5}); }, "factor");
     expect_refused([&] { HierarchicalIndicator(grid, field, Spread{.slope = -1}); }, "slope");
 }

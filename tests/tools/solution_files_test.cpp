@@ -144,7 +144,7 @@ void expect_file_of_dealii(unsigned degree, bool distorted) {
     const DealiiField<3, dealii::Vector<double>> field(grid, dofs, u);
     const HighOrder data(grid, field);
     const VirtualRefinement fine(data, {.tolerance = tolerance});
-    const auto in_place = isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds());
+    const auto in_place = isosurface<3>(fine, 0.3, under(fine.criterion(), fine.bounds()));
     const Surface<3> read = drawn_by_program(file, 0.3, tolerance);
     EXPECT_GT(read.simplices.size(), 2000U);
     EXPECT_EQ(edges_inside(read), 0U);
@@ -207,7 +207,7 @@ void expect_file_of_vtk(int degree, bool own_points, int mode) {
     const LagrangeField<3> field(grid, values);
     const HighOrder data(grid, field);
     const VirtualRefinement fine(data, {.tolerance = tolerance});
-    const auto in_place = isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds());
+    const auto in_place = isosurface<3>(fine, 0.3, under(fine.criterion(), fine.bounds()));
     const Surface<3> read = drawn_by_program(file, 0.3, tolerance);
     EXPECT_EQ(edges_inside(read), 0U);
     expect_same(read, in_place.surface, 1e-6);
@@ -267,7 +267,7 @@ TEST(SolutionFiles, OfOlderVersionsAreTurned) {
     const HighOrder data(grid, field);
     const VirtualRefinement fine(data, {.tolerance = tolerance});
     expect_same(drawn_by_program(file, 0.3, tolerance),
-                isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds()).surface, 1e-6);
+                isosurface<3>(fine, 0.3, under(fine.criterion(), fine.bounds())).surface, 1e-6);
 }
 
 TEST(SolutionFiles, OfVtkAreDrawnAsInPlace) {

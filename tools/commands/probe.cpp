@@ -74,7 +74,7 @@ std::vector<Point> read_points(const fs::path& path) {
 nestgrid::ProbeResult probe_within(const nestgrid::HighOrder& data,
                                    const std::vector<Point>& points) {
     const nestgrid::VirtualRefinement fine(data, {.tolerance = nestgrid::default_error(data)});
-    return nestgrid::probe(fine, points, fine.criterion(), fine.bounds());
+    return nestgrid::probe(fine, points, under(fine.criterion(), fine.bounds()));
 }
 
 /// Takes points down at one moment.
@@ -91,8 +91,9 @@ nestgrid::ProbeResult probe_at(const Moment& moment, const std::vector<Point>& p
         if (exactly) return nestgrid::probe(hierarchy, points);
         set_default_threshold(threshold, with_lens);
         const nestgrid::Criteria& criteria = moment.criteria();
-        return nestgrid::probe(hierarchy, points, criteria.at(moment.threshold(threshold.front())),
-                               criteria.bounds());
+        return nestgrid::probe(
+            hierarchy, points,
+            under(criteria.at(moment.threshold(threshold.front())), criteria.bounds()));
     });
 }
 

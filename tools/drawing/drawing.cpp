@@ -202,16 +202,16 @@ private:
     /// Counts the triangles of the slice and of the isosurface beside it.
     std::optional<std::uint64_t> count_both(const nestgrid::Criterion& criterion,
                                             std::uint64_t most) const {
-        return count_triangles(hierarchy_, {{request_.function}, {*request_.isovalue}}, criterion,
-                               bounds(), most, {}, executor_);
+        return count_triangles(hierarchy_, {{request_.function}, {*request_.isovalue}},
+                               under(criterion, bounds()), most, {}, {executor_});
     }
 
     /// The isosurface of all data, where it is compared with.
     nestgrid::Surface<3> whole() const {
         if (!request_.measures && !request_.keeps_distances) return {};
-        return nestgrid::isosurface<3>(hierarchy_, *request_.isovalue, nestgrid::Exact{}, bounds(),
-                                       {.elements = false, .at_nodes = request_.at_nodes},
-                                       executor_)
+        return nestgrid::isosurface<3>(
+                   hierarchy_, *request_.isovalue, under(nestgrid::Exact{}, bounds()),
+                   {.elements = false, .at_nodes = request_.at_nodes}, {executor_})
             .surface;
     }
     Drawn draw_at(Drawn d) const {
@@ -259,9 +259,9 @@ private:
 
     void draw_exactly(Drawn& d) const {
         d.result = request_.function == nullptr
-                       ? triangles(0)
-                       : slice(hierarchy_, *request_.function,
-                               {.cap = request_.cap, .elements = keeps_elements()}, executor_);
+                       ? triangles(0, {})
+                       : slice(hierarchy_, *request_.function, {},
+                               {.cap = request_.cap, .elements = keeps_elements()}, {executor_});
         refine(d.result.surface, request_.colour_tolerance);
     }
     void draw_with(const AnyCriterion& criterion, const Bounds& bounds, double threshold,
@@ -270,22 +270,23 @@ private:
             return draw_isosurface(criterion, bounds, threshold, whole, d);
         }
         const IsosurfaceOptions options{.cap = request_.cap, .elements = keeps_elements()};
+        const nestgrid::Projection projection = under(criterion, bounds);
         if (request_.isovalue) {
-            auto both = slices(hierarchy_, {{request_.function}, {*request_.isovalue}}, criterion,
-                               bounds, options, executor_);
+            auto both = slices(hierarchy_, {{request_.function}, {*request_.isovalue}}, projection,
+                               options, {executor_});
             d.result = std::move(both[0]);
             d.isosurface = std::move(both[1].surface);
         } else if (request_.function != nullptr) {
-            d.result = slice(hierarchy_, *request_.function, criterion, bounds, options, executor_);
+            d.result = slice(hierarchy_, *request_.function, projection, options, {executor_});
         } else {
-            d.result = triangles(threshold, criterion, bounds);
+            d.result = triangles(threshold, projection);
         }
         if (request_.collapses && request_.scale == 0) {
-            refine(d.result.surface, threshold, criterion, bounds);
+            refine(d.result.surface, threshold, projection);
         }
-        refine(d.result.surface, request_.colour_tolerance, criterion, bounds);
+        refine(d.result.surface, request_.colour_tolerance, projection);
         if (!d.isosurface.attributes.empty()) {
-            refine(d.isosurface, request_.colour_tolerance, criterion, bounds);
+            refine(d.isosurface, request_.colour_tolerance, projection);
         }
     }
     void draw_isosurface(const AnyCriterion& criterion, const Bounds& bounds, double threshold,
@@ -293,8 +294,8 @@ private:
         const double isovalue = *request_.isovalue;
         const IsosurfaceOptions options = isosurface_options(executor_.concurrency() == 1);
         if (in_plane()) {
-            auto lines = nestgrid::isosurface<2>(hierarchy_, isovalue, criterion, bounds, options,
-                                                 executor_);
+            auto lines = nestgrid::isosurface<2>(hierarchy_, isovalue, under(criterion, bounds),
+                                                 options, {executor_});
             d.segments = std::move(lines.surface);
             d.result = {lines, {}, lines.counts};
             d.result.surface_error = lines.surface_error;
@@ -305,26 +306,26 @@ private:
             d.far_points = within.points;
             d.result = std::move(within.isosurface);
         } else {
-            d.result = nestgrid::isosurface<3>(hierarchy_, isovalue, criterion, bounds, options,
-                                               executor_);
+            d.result = nestgrid::isosurface<3>(hierarchy_, isovalue, under(criterion, bounds),
+                                               options, {executor_});
         }
     }
     /// The grid of dimension 2.
-    template <class... With>
-    Isosurface<3> triangles(double threshold, const With&... with) const {
+    Isosurface<3> triangles(double threshold, const nestgrid::Projection& projection) const {
         nestgrid::ShadingOptions options;
         options.elements = keeps_elements();
         if (request_.collapses) options.flatness = threshold;
-        nestgrid::Shading s = request_.scale == 0 ? shading(hierarchy_, with..., options, executor_)
-                                                  : height_field(hierarchy_, request_.scale,
-                                                                 with..., options, executor_);
+        nestgrid::Shading s =
+            request_.scale == 0
+                ? shading(hierarchy_, projection, options, {executor_})
+                : height_field(hierarchy_, request_.scale, projection, options, {executor_});
         return {s, std::move(s.surface), s.counts};
     }
     /// Makes colours follow the data.
-    /// \param with the criterion and the bounds that the surface was drawn with, or nothing
-    template <class... With>
-    void refine(nestgrid::Surface<3>& surface, double tolerance, const With&... with) const {
-        if (tolerance > 0) refine_colours(surface, hierarchy_, tolerance, with...);
+    /// \param projection that the surface was drawn with
+    void refine(nestgrid::Surface<3>& surface, double tolerance,
+                const nestgrid::Projection& projection = {}) const {
+        if (tolerance > 0) refine_colours(surface, hierarchy_, tolerance, projection);
     }
 
     /// Takes edges away within the threshold.
@@ -359,8 +360,8 @@ private:
         constexpr std::size_t points = 200000;
         tell_("measuring");
         const Meter meter;
-        d.measured = nestgrid::measure_error(d.result.surface, whole, hierarchy_,
-                                             *request_.isovalue, points, executor_);
+        d.measured = nestgrid::measure_error(hierarchy_, d.result.surface, whole,
+                                             *request_.isovalue, points, {executor_});
         d.measure_seconds = meter.seconds();
     }
 

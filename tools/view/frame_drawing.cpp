@@ -50,8 +50,8 @@ bool FrameDrawing::fits(double threshold) const {
             most -= used;
         }
         if (!request_.isovalue) return true;
-        return count_triangles(hierarchy, {{}, {*request_.isovalue}}, criterion, *criteria_.bounds,
-                               most, options, executor_)
+        return count_triangles(hierarchy, {{}, {*request_.isovalue}},
+                               under(criterion, *criteria_.bounds), most, options, {executor_})
             .has_value();
     });
     if (!waits) throw FrameAbandoned{};
@@ -70,8 +70,9 @@ FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
     options.cuts = keeps ? Cuts::linear : Cuts::finest;
     const DroppedNodes dropped(criterion, criteria_.slopes.get());
     const Criterion& asked = criteria_.slopes == nullptr ? criterion : dropped;
-    FramePart part{"isosurface", isosurface<3>(hierarchy, *request_.isovalue, asked,
-                                               *criteria_.bounds, options, executor_)};
+    FramePart part{"isosurface",
+                   isosurface<3>(hierarchy, *request_.isovalue, under(asked, *criteria_.bounds),
+                                 options, {executor_})};
     if (part.drawn.cancelled) throw FrameAbandoned{};
     if (criteria_.slopes != nullptr && !request_.collapses()) part.distance = dropped.greatest();
     if (normals && quickly) {
@@ -92,8 +93,8 @@ void FrameDrawing::collapse_edges(FramePart& part, const Hierarchy<Real>& hierar
 
 template <class Real>
 Slice FrameDrawing::draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const {
-    Slice drawn = slice(hierarchy, *plane_, criterion, *criteria_.bounds,
-                        watched({.elements = request_.outlines}), executor_);
+    Slice drawn = slice(hierarchy, *plane_, under(criterion, *criteria_.bounds),
+                        watched({.elements = request_.outlines}), {executor_});
     if (drawn.cancelled) throw FrameAbandoned{};
     return drawn;
 }

@@ -30,37 +30,15 @@ inline IsosurfaceOptions capped(IsosurfaceOptions options) {
 
 }  // namespace detail
 
-/// The boundary under the projection with `criterion`, oriented outwards: a closed surface.
-/// Attribute c of a vertex is component c of the field.
-/// \param bounds of the same grid and field
-/// \throw InvalidInput where the hierarchy has another dimension
-/// \throw GridError as isosurface()
-template <class Real>
-Slice boundary_surface(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
-                       const Bounds& bounds, const IsosurfaceOptions& options = {},
-                       const Executor& executor = SequentialExecutor{}) {
-    return slice(hierarchy, detail::Everywhere{}, criterion, bounds, detail::capped(options),
-                 executor);
-}
+/// The boundary, oriented outwards: a closed surface. Attribute c of a vertex is component c of the
+/// field. As slice(), it needs no preroll where all data are asked for.
+Projected<Slice> boundary_surface(const Prerolls& prerolls, const Projection& projection = {},
+                                  const IsosurfaceOptions& options = {}, const Work& work = {});
 template <class Grid, class Field>
-Slice boundary_surface(const Grid& grid, const Field& field, const Criterion& criterion,
-                       const Bounds& bounds, const IsosurfaceOptions& options = {},
-                       const Executor& executor = SequentialExecutor{}) {
-    return boundary_surface(erase(grid, field), criterion, bounds, options, executor);
-}
-
-/// Draws the boundary with S from options.threshold or options.max_triangles, after its own
-/// preroll, or, at threshold 0, without any.
-template <class Real>
-Slice boundary_surface(const Hierarchy<Real>& hierarchy, const IsosurfaceOptions& options = {},
-                       const Executor& executor = SequentialExecutor{}) {
-    return slice(hierarchy, detail::Everywhere{}, detail::capped(options), executor);
-}
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-Slice boundary_surface(const Grid& grid, const Field& field, const IsosurfaceOptions& options = {},
-                       const Executor& executor = SequentialExecutor{}) {
-    return boundary_surface(erase(grid, field), options, executor);
-}
+    requires detail::FieldOfGrid<Field, Grid> Projected<Slice> boundary_surface(
+        const Grid& grid, const Field& field, const Projection& projection = {},
+        const IsosurfaceOptions& options = {}, const Work& work = {}) {
+        return boundary_surface(Prerolls(grid, field), projection, options, work);
+    }
 
 }  // namespace nestgrid

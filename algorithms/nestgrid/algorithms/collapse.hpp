@@ -88,11 +88,5 @@ template <class Real>
 Collapsed collapse(Surface<3>& surface, const Hierarchy<Real>& hierarchy, double isovalue,
                    const Bounds& bounds, const CollapseOptions& options,
                    const Executor& executor = SequentialExecutor{});
-template <class Grid, class Field>
-Collapsed collapse(Surface<3>& surface, const Grid& grid, const Field& field, double isovalue,
-                   const Bounds& bounds, const CollapseOptions& options,
-                   const Executor& executor = SequentialExecutor{}) {
-    return collapse(surface, erase(grid, field), isovalue, bounds, options, executor);
-}
 
 }  // namespace nestgrid

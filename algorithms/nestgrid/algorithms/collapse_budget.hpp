@@ -80,16 +80,6 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
                                            max_triangles, options, executor);
     });
 }
-template <class Grid, class Field, MakesCriterion Make, RangedBounds Ranged>
-    requires(!detail::AnyHierarchy<Grid>)
-TriangleBudget find_collapse_error(const Grid& grid, const Field& field, double isovalue,
-                                   const Make& criterion_at, const Ranged& bounds,
-                                   std::uint64_t max_triangles,
-                                   const IsosurfaceOptions& options = {},
-                                   const Executor& executor = SequentialExecutor{}) {
-    return find_collapse_error(erase(grid, field), isovalue, criterion_at, bounds, max_triangles,
-                               options, executor);
-}
 
 /// The least distance such that the isosurface that isosurface_within() draws with half of it, and
 /// that is then collapsed within it, has at most max_triangles. It is the `threshold` of the
@@ -114,16 +104,6 @@ TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double i
     };
     return detail::find_collapse_distance(hierarchy, isovalue, whole, also_fine, bounds,
                                           max_triangles, options, executor);
-}
-template <class Grid, class Field, MakesCriterion Make>
-    requires(!detail::AnyHierarchy<Grid>)
-TriangleBudget find_collapse_distance(const Grid& grid, const Field& field, double isovalue,
-                                      const Surface<3>& whole, const Make& criterion_at,
-                                      const Bounds& bounds, std::uint64_t max_triangles,
-                                      const IsosurfaceOptions& options = {},
-                                      const Executor& executor = SequentialExecutor{}) {
-    return find_collapse_distance(erase(grid, field), isovalue, whole, criterion_at, bounds,
-                                  max_triangles, options, executor);
 }
 
 }  // namespace nestgrid

@@ -59,11 +59,5 @@ template <class Real>
 Collapsed collapse_colours(Surface<3>& surface, const Hierarchy<Real>& hierarchy,
                            const Bounds& bounds, const ColourCollapseOptions& options,
                            const Executor& executor = SequentialExecutor{});
-template <class Grid, class Field>
-Collapsed collapse_colours(Surface<3>& surface, const Grid& grid, const Field& field,
-                           const Bounds& bounds, const ColourCollapseOptions& options,
-                           const Executor& executor = SequentialExecutor{}) {
-    return collapse_colours(surface, erase(grid, field), bounds, options, executor);
-}
 
 }  // namespace nestgrid

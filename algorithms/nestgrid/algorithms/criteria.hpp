@@ -17,7 +17,7 @@ public:
     /// asks for everything, Prerolls::finest().
     /// \param isovalues of the level sets that are drawn; empty where none are
     /// \throw InvalidInput as Projection::check() and Prerolls::choose()
-    Criteria(Prerolls& prerolls, Projection projection, std::span<const double> isovalues,
+    Criteria(const Prerolls& prerolls, Projection projection, std::span<const double> isovalues,
              const Work& work);
 
     /// S at a threshold, which holds at more nodes the greater it is: to be handed to

@@ -190,6 +190,9 @@ public:
     template <std::derived_from<Criterion> S>
         requires(!std::same_as<S, AnyCriterion>)
     AnyCriterion(S criterion) : criterion_{std::make_shared<const S>(std::move(criterion))} {}
+    /// \param criterion not null
+    explicit AnyCriterion(std::shared_ptr<const Criterion> criterion)
+        : criterion_{std::move(criterion)} {}
 
     NodeMask holds(const NewNodes& nodes) const override { return criterion_->holds(nodes); }
     bool blends() const override { return criterion_->blends(); }

@@ -24,6 +24,7 @@
 #include <span>
 
 #include <nestgrid/algorithms/executor.hpp>
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
@@ -37,40 +38,16 @@ bool cuts_are_errors(const HierarchyFacts& facts);
 /// \param executor of several threads, or of one; the result does not depend on it
 /// \throw InvalidInput where an isovalue is not finite, and for a spread as in measured_indicator()
 /// \throw GridError where the grid has changed since the bounds were computed
-SweptIndicator cut_deviations(const Hierarchy<float>& hierarchy, std::span<const double> isovalues,
+SweptIndicator cut_deviations(const FieldOnGrid& field, std::span<const double> isovalues,
                               const Bounds& bounds, const Spread& spread = {},
                               const Executor& executor = SequentialExecutor{});
-SweptIndicator cut_deviations(const Hierarchy<double>& hierarchy, std::span<const double> isovalues,
-                              const Bounds& bounds, const Spread& spread = {},
-                              const Executor& executor = SequentialExecutor{});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator cut_deviations(const Grid& grid, const Field& field,
-                              std::span<const double> isovalues, const Bounds& bounds,
-                              const Spread& spread = {},
-                              const Executor& executor = SequentialExecutor{}) {
-    return cut_deviations(erase(grid, field), isovalues, bounds, spread, executor);
-}
 
 /// The same errors, each divided by the slope there of what is not C, and at most the diameter of
 /// the element: an estimate of the distance between the two surfaces, in units of length. It keeps
 /// no promise: where the data are flat, the surface may be further off, and parts smaller than
 /// epsilon may be left out.
-SweptIndicator slope_deviations(const Hierarchy<float>& hierarchy,
-                                std::span<const double> isovalues, const Bounds& bounds,
-                                const Spread& spread = {},
+SweptIndicator slope_deviations(const FieldOnGrid& field, std::span<const double> isovalues,
+                                const Bounds& bounds, const Spread& spread = {},
                                 const Executor& executor = SequentialExecutor{});
-SweptIndicator slope_deviations(const Hierarchy<double>& hierarchy,
-                                std::span<const double> isovalues, const Bounds& bounds,
-                                const Spread& spread = {},
-                                const Executor& executor = SequentialExecutor{});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator slope_deviations(const Grid& grid, const Field& field,
-                                std::span<const double> isovalues, const Bounds& bounds,
-                                const Spread& spread = {},
-                                const Executor& executor = SequentialExecutor{}) {
-    return slope_deviations(erase(grid, field), isovalues, bounds, spread, executor);
-}
 
 }  // namespace nestgrid

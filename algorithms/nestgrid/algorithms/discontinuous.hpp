@@ -25,6 +25,9 @@ namespace nestgrid {
 struct DiscontinuousOptions {
     /// Elements stop where component 0 deviates by this at most, in the units of the data.
     double threshold = 0;
+    /// Of the same data, borrowed; or null: then the drawing computes its own where the threshold
+    /// is not 0.
+    const ElementDeviations* deviations = nullptr;
     /// Quadrilaterals in which some component differs by more than this from two triangles get a
     /// vertex in their middle. At least 0, in the units of the data.
     double flatness = std::numeric_limits<double>::infinity();
@@ -49,20 +52,14 @@ struct DiscontinuousSurface : ErrorBounds {
 
 // All of these throw InvalidInput where the threshold or the flatness is negative or not a number,
 // where the grid has another dimension, and where a value is not finite; GridError where the grid
-// has changed since the deviations were computed. Without deviations they compute their own where
-// the threshold is not 0.
+// has changed since the deviations were computed.
 
 /// Draws the elements of a two-dimensional grid, coloured by the data.
-DiscontinuousSurface shading(const DiscontinuousData& data, const ElementDeviations& deviations,
-                             const DiscontinuousOptions& options = {});
 DiscontinuousSurface shading(const DiscontinuousData& data,
                              const DiscontinuousOptions& options = {});
 
 /// Draws a shading lifted along z by scale times component 0.
 /// \throw InvalidInput also where the scale is not finite
-DiscontinuousSurface height_field(const DiscontinuousData& data, double scale,
-                                  const ElementDeviations& deviations,
-                                  const DiscontinuousOptions& options = {});
 DiscontinuousSurface height_field(const DiscontinuousData& data, double scale,
                                   const DiscontinuousOptions& options = {});
 
@@ -70,9 +67,6 @@ DiscontinuousSurface height_field(const DiscontinuousData& data, double scale,
 /// towards where the function is negative. Where it runs in a face between two elements, the one
 /// in which the function is negative colours it.
 /// \throw InvalidInput also where the function has no finite value
-DiscontinuousSurface slice(const DiscontinuousData& data, const LevelFunction& function,
-                           const ElementDeviations& deviations,
-                           const DiscontinuousOptions& options = {});
 DiscontinuousSurface slice(const DiscontinuousData& data, const LevelFunction& function,
                            const DiscontinuousOptions& options = {});
 

@@ -13,6 +13,7 @@
 // positions. As an indicator they are saturated, too, and the stricter criterion.
 #pragma once
 
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
@@ -23,26 +24,11 @@ struct GeometryOptions {
 };
 
 /// \throw InvalidInput where a position is not finite, and for a spread as in measured_indicator()
-SweptIndicator geometry_indicator(const Hierarchy<float>& hierarchy,
-                                  const GeometryOptions& options = {});
-SweptIndicator geometry_indicator(const Hierarchy<double>& hierarchy,
-                                  const GeometryOptions& options = {});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator geometry_indicator(const Grid& grid, const Field& field,
-                                  const GeometryOptions& options = {}) {
-    return geometry_indicator(erase(grid, field), options);
-}
+SweptIndicator geometry_indicator(const FieldOnGrid& field, const GeometryOptions& options = {});
 
 /// The offset of each node and the greatest bound of finer ones; see
 /// IsosurfaceOptions::position_bounds.
 /// \throw InvalidInput where a position is not finite
-SweptIndicator position_bounds(const Hierarchy<float>& hierarchy);
-SweptIndicator position_bounds(const Hierarchy<double>& hierarchy);
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator position_bounds(const Grid& grid, const Field& field) {
-    return position_bounds(erase(grid, field));
-}
+SweptIndicator position_bounds(const FieldOnGrid& field);
 
 }  // namespace nestgrid

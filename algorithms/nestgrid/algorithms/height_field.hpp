@@ -10,43 +10,16 @@
 
 namespace nestgrid {
 
-/// Draws the height field under the projection with `criterion`.
+/// Draws the height field.
 /// \throw InvalidInput, GridError as shading(); InvalidInput also where the scale is not finite
-template <class Real>
-Shading height_field(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
-                     const Bounds& bounds, const ShadingOptions& options = {},
-                     const Executor& executor = SequentialExecutor{});
-/// Draws the height field with S from options.threshold.
-template <class Real>
-Shading height_field(const Hierarchy<Real>& hierarchy, double scale,
-                     const HierarchicalIndicator& indicator, const ShadingOptions& options = {},
-                     const Executor& executor = SequentialExecutor{});
-/// Draws the height field with S from options.threshold, after its own preroll.
-template <class Real>
-Shading height_field(const Hierarchy<Real>& hierarchy, double scale,
-                     const ShadingOptions& options = {},
-                     const Executor& executor = SequentialExecutor{});
-
-// Each also takes a grid and a field in the place of the hierarchy.
-
+Projected<Shading> height_field(const Prerolls& prerolls, double scale,
+                                const Projection& projection = {},
+                                const ShadingOptions& options = {}, const Work& work = {});
 template <class Grid, class Field>
-    requires NodalField<Field, Grid> Shading
-    height_field(const Grid& grid, const Field& field, double scale, const Criterion& criterion,
-                 const Bounds& bounds, const ShadingOptions& options = {},
-                 const Executor& executor = SequentialExecutor{}) {
-        return height_field(erase(grid, field), scale, criterion, bounds, options, executor);
-    }
-template <class Grid, class Field>
-    requires NodalField<Field, Grid> Shading height_field(
-        const Grid& grid, const Field& field, double scale, const HierarchicalIndicator& indicator,
-        const ShadingOptions& options = {}, const Executor& executor = SequentialExecutor{}) {
-        return height_field(erase(grid, field), scale, indicator, options, executor);
-    }
-template <class Grid, class Field>
-    requires NodalField<Field, Grid> Shading height_field(
-        const Grid& grid, const Field& field, double scale, const ShadingOptions& options = {},
-        const Executor& executor = SequentialExecutor{}) {
-        return height_field(erase(grid, field), scale, options, executor);
+    requires detail::FieldOfGrid<Field, Grid> Projected<Shading> height_field(
+        const Grid& grid, const Field& field, double scale, const Projection& projection = {},
+        const ShadingOptions& options = {}, const Work& work = {}) {
+        return height_field(Prerolls(grid, field), scale, projection, options, work);
     }
 
 }  // namespace nestgrid

@@ -5,9 +5,10 @@
 // are in surface_isolines.hpp, which this header includes.
 #pragma once
 
-#include <nestgrid/algorithms/executor.hpp>
-#include <nestgrid/algorithms/indicator.hpp>
+#include <span>
+
 #include <nestgrid/algorithms/isosurface_options.hpp>
+#include <nestgrid/algorithms/projected.hpp>
 #include <nestgrid/algorithms/surface_isolines.hpp>
 
 namespace nestgrid {
@@ -20,50 +21,20 @@ struct Isolines : ErrorBounds {
     bool cancelled = false;  ///< by options.progress; the lines are then a part
 };
 
-/// The isolines of component 0 of a field under the projection with `criterion`, in one traversal.
-/// They end on the boundary of the domain only. Vertices carry components 1 ... of the field.
-/// \param options as of isosurface(); normals, elements and references are not kept
-/// \throw GridError, InvalidInput as isosurface()
-template <class Real>
-Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                  const Criterion& criterion, const Bounds& bounds,
-                  const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{});
-/// Draws isolines with S from options.threshold.
-/// \throw InvalidInput also for options.max_triangles, which is for one isoline
-template <class Real>
-Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                  const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{});
-/// Draws isolines with S from options.threshold, after its own preroll.
-template <class Real>
-Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
-                  const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{});
-
-// Each also takes a grid and a field in the place of the hierarchy.
-
+/// The isolines of component 0 of a field of dimension 2, in one traversal. They end on the
+/// boundary of the domain only. Vertices carry components 1 ... of the field. \param options as of
+/// isosurface(); normals, elements and references are not kept \throw InvalidInput also where a
+/// value is not a number, for collapses, and for a number of
+///        triangles: a limit of segments is for one isoline
+Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> values,
+                             const Projection& projection = {},
+                             const IsosurfaceOptions& options = {}, const Work& work = {});
 template <class Grid, class Field>
-    requires(Grid::dimension == 2)
-Isolines isolines(const Grid& grid, const Field& field, std::span<const double> values,
-                  const Criterion& criterion, const Bounds& bounds,
-                  const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{}) {
-    return isolines(erase(grid, field), values, criterion, bounds, options, executor);
-}
-template <class Grid, class Field>
-    requires(Grid::dimension == 2)
-Isolines isolines(const Grid& grid, const Field& field, std::span<const double> values,
-                  const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{}) {
-    return isolines(erase(grid, field), values, indicator, options, executor);
-}
-template <class Grid, class Field>
-    requires(Grid::dimension == 2)
-Isolines isolines(const Grid& grid, const Field& field, std::span<const double> values,
-                  const IsosurfaceOptions& options = {},
-                  const Executor& executor = SequentialExecutor{}) {
-    return isolines(erase(grid, field), values, options, executor);
-}
+    requires detail::FieldOfGrid<Field, Grid> Projected<Isolines> isolines(
+        const Grid& grid, const Field& field, std::span<const double> values,
+        const Projection& projection = {}, const IsosurfaceOptions& options = {},
+        const Work& work = {}) {
+        return isolines(Prerolls(grid, field), values, projection, options, work);
+    }
 
 }  // namespace nestgrid

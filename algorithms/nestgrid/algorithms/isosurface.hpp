@@ -13,66 +13,33 @@
 // C are no special case, and no triangle degenerates to a point. The proof:
 // docs/closed_surfaces.md.
 //
-// The functions below make a Hierarchy of the grid and the field (detail/erase.hpp) and call the
-// compiled library. Each also takes a hierarchy in their place, such as that of a table in C
-// (table.hpp), with its dimension: isosurface<3>(hierarchy, isovalue). Several surfaces share one
-// traversal in isosurfaces.hpp.
+//     const auto drawn = isosurface(grid, field, 12.0, {.threshold = 0.1});
+//
+// For several drawings of a field keep its prerolls: isosurface<3>(prerolls, 12.0). What holds of
+// all drawings, projected.hpp says. Several surfaces share one traversal in isosurfaces.hpp.
 #pragma once
 
-#include <nestgrid/algorithms/executor.hpp>
-#include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/isosurface_options.hpp>
+#include <nestgrid/algorithms/projected.hpp>
 
 namespace nestgrid {
 
-/// The isosurface U = isovalue of component 0 of the field under the projection with `criterion`.
-/// \param bounds of the same grid and field, for the search: a HierarchicalIndicator, or other
-///        Bounds
-/// \param executor of several threads, or of one (executor.hpp); the result does not depend on it
-/// \throw GridError where the field has no value, or where the grid has changed since the bounds
-///        were computed
-/// \throw InvalidInput where the isovalue is not a number, or the hierarchy has another dimension
-template <int dimension, class Real>
-Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
-                                 const Criterion& criterion, const Bounds& bounds,
-                                 const IsosurfaceOptions& options = {},
-                                 const Executor& executor = SequentialExecutor{});
-/// Draws the isosurface with S from options.threshold or options.max_triangles.
-/// \throw InvalidInput also where the threshold is negative or not a number, and where even the
-///        coarsest surface has more triangles than asked for
-template <int dimension, class Real>
-Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
-                                 const HierarchicalIndicator& indicator,
-                                 const IsosurfaceOptions& options = {},
-                                 const Executor& executor = SequentialExecutor{});
-/// Draws the isosurface like that after a preroll of its own.
-template <int dimension, class Real>
-Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isovalue,
-                                 const IsosurfaceOptions& options = {},
-                                 const Executor& executor = SequentialExecutor{});
-
-// Each also takes a grid and a field in the place of the hierarchy.
-
+/// The isosurface U = isovalue of component 0 of a field of dimension 3, or the isoline of one of
+/// dimension 2. Edges are collapsed, and distances kept, in dimension 3.
+/// \throw InvalidInput also where the isovalue is not a number, and where an isosurface that is
+///        collapsed is to have a cap or vertices at nodes
+template <int dimension>
+Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double isovalue,
+                                            const Projection& projection = {},
+                                            const IsosurfaceOptions& options = {},
+                                            const Work& work = {});
 template <class Grid, class Field>
-auto isosurface(const Grid& grid, const Field& field, double isovalue, const Criterion& criterion,
-                const Bounds& bounds, const IsosurfaceOptions& options = {},
-                const Executor& executor = SequentialExecutor{}) {
-    return isosurface<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue, criterion,
-                                                         bounds, options, executor);
-}
-template <class Grid, class Field>
+    requires detail::FieldOfGrid<Field, Grid>
 auto isosurface(const Grid& grid, const Field& field, double isovalue,
-                const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
-                const Executor& executor = SequentialExecutor{}) {
-    return isosurface<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue, indicator,
-                                                         options, executor);
-}
-template <class Grid, class Field>
-auto isosurface(const Grid& grid, const Field& field, double isovalue,
-                const IsosurfaceOptions& options = {},
-                const Executor& executor = SequentialExecutor{}) {
-    return isosurface<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue, options,
-                                                         executor);
+                const Projection& projection = {}, const IsosurfaceOptions& options = {},
+                const Work& work = {}) {
+    return isosurface<detail::surface_dimension<Grid>()>(Prerolls(grid, field), isovalue,
+                                                         projection, options, work);
 }
 
 }  // namespace nestgrid

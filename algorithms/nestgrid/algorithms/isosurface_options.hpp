@@ -56,13 +56,8 @@ enum class Cuts : std::uint8_t {
     finest,
 };
 
-/// How finely isosurfaces and slices are drawn, and what is kept of them.
+/// How isosurfaces and slices are drawn, and what is kept of them. How finely, a Projection says.
 struct IsosurfaceOptions {
-    /// epsilon, in the units of the data: offsets up to it are projected away.
-    double threshold = 0;
-    /// The largest number of triangles (segments), beside which `threshold` is not used: the least
-    /// threshold that keeps within it is found (triangle_budget.hpp). 0 asks for none.
-    std::uint64_t max_triangles = 0;
     /// Linear without regard to this: edges of elements that may stop beside finer ones (octrees,
     /// red-green refinement, hanging nodes), slices, and surfaces with vertices at nodes.
     Cuts cuts = Cuts::linear;

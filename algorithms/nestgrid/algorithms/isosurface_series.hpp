@@ -21,7 +21,8 @@ class SeriesState {
 public:
     virtual ~SeriesState() = default;
     virtual const Isosurface<dimension>& draw(const HierarchicalIndicator& indicator,
-                                              double isovalue, const IsosurfaceOptions& options,
+                                              double isovalue, const Projection& projection,
+                                              const IsosurfaceOptions& options,
                                               const Executor& executor) = 0;
 };
 
@@ -66,10 +67,12 @@ public:
     const HierarchicalIndicator& indicator() const { return indicator_; }
 
     /// What isosurface() gives, until the next call.
-    /// \throw as isosurface()
-    const Result& draw(double isovalue, const IsosurfaceOptions& options = {},
+    /// \throw as isosurface(); InvalidInput also for a projection by anything but offsets within a
+    ///        threshold or a number of triangles
+    const Result& draw(double isovalue, const Projection& projection = {},
+                       const IsosurfaceOptions& options = {},
                        const Executor& executor = SequentialExecutor{}) {
-        return state_->draw(indicator_, isovalue, options, executor);
+        return state_->draw(indicator_, isovalue, projection, options, executor);
     }
 
 private:

@@ -63,14 +63,5 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
     return detail::isosurface_within(hierarchy, isovalue, nearness, also_fine, bounds, options,
                                      executor);
 }
-template <class Grid, class Field, std::derived_from<Criterion> S>
-    requires(!detail::AnyHierarchy<Grid>)
-IsosurfaceWithin isosurface_within(const Grid& grid, const Field& field, double isovalue,
-                                   const Nearness& nearness, const S& criterion,
-                                   const Bounds& bounds, const IsosurfaceOptions& options = {},
-                                   const Executor& executor = SequentialExecutor{}) {
-    return isosurface_within(erase(grid, field), isovalue, nearness, criterion, bounds, options,
-                             executor);
-}
 
 }  // namespace nestgrid

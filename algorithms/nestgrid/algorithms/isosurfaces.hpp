@@ -16,65 +16,59 @@ namespace nestgrid {
 
 namespace detail {
 
-/// Draws isosurfaces of a hierarchy of the same dimension. Defined for dimensions 2 and 3, float
-/// and double.
-template <int dimension, class Real>
-std::vector<Isosurface<dimension>> draw_isosurfaces(
-    const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
-    const SurfaceTargets<dimension>& targets, const Criterion& criterion, const Bounds& bounds,
-    const IsosurfaceOptions& options, const Executor& executor);
+/// Draws into targets, or into the results where there are none.
+template <int dimension>
+std::vector<Isosurface<dimension>> draw_isosurfaces(const Prerolls& prerolls,
+                                                    std::span<const double> isovalues,
+                                                    const SurfaceTargets<dimension>& targets,
+                                                    const Projection& projection,
+                                                    const IsosurfaceOptions& options,
+                                                    const Work& work);
 
 }  // namespace detail
 
-/// The isosurfaces U = isovalues[i] of component 0 of the field under the projection with
-/// `criterion`, in one traversal.
-/// \param bounds of the same grid and field, for the search: a HierarchicalIndicator, or other
-///        Bounds
-/// \param executor of several threads, or of one (executor.hpp); the result does not depend on it
+/// The isosurfaces U = isovalues[i] of component 0 of the field, at one threshold.
 /// \return one result for each isovalue
-/// \throw GridError where the field has no value, or where the grid has changed since the bounds
-///        were computed
-/// \throw InvalidInput where an isovalue is not a number, or a hierarchy has another dimension
-template <int dimension, class Real>
-std::vector<Isosurface<dimension>> isosurfaces(const Hierarchy<Real>& hierarchy,
+/// \throw InvalidInput also where an isovalue is not a number, for collapses, distances that are
+///        kept, and a number of triangles
+template <int dimension>
+std::vector<Isosurface<dimension>> isosurfaces(const Prerolls& prerolls,
                                                std::span<const double> isovalues,
-                                               const Criterion& criterion, const Bounds& bounds,
+                                               const Projection& projection = {},
                                                const IsosurfaceOptions& options = {},
-                                               const Executor& executor = SequentialExecutor{}) {
-    hierarchy.facts().require_dimension(dimension);
-    return detail::draw_isosurfaces<dimension>(hierarchy, isovalues, {}, criterion, bounds, options,
-                                               executor);
+                                               const Work& work = {}) {
+    return detail::draw_isosurfaces<dimension>(prerolls, isovalues, {}, projection, options, work);
 }
 template <class Grid, class Field>
+    requires detail::FieldOfGrid<Field, Grid>
 auto isosurfaces(const Grid& grid, const Field& field, std::span<const double> isovalues,
-                 const Criterion& criterion, const Bounds& bounds,
-                 const IsosurfaceOptions& options = {},
-                 const Executor& executor = SequentialExecutor{}) {
-    return isosurfaces<detail::surface_dimension<Grid>()>(erase(grid, field), isovalues, criterion,
-                                                          bounds, options, executor);
+                 const Projection& projection = {}, const IsosurfaceOptions& options = {},
+                 const Work& work = {}) {
+    return isosurfaces<detail::surface_dimension<Grid>()>(Prerolls(grid, field), isovalues,
+                                                          projection, options, work);
 }
 
 /// Draws the isosurfaces into sinks (surface.hpp), a MeshSink or a SimplexSink of the grid's
 /// dimension for each. The surfaces of the results stay empty.
 /// \throw InvalidInput also where there is not one sink for each isovalue, and for normals into a
 ///        SimplexSink
-template <int dimension, class Real, class Sink>
-std::vector<Isosurface<dimension>> extract_isosurfaces(
-    const Hierarchy<Real>& hierarchy, std::span<const double> isovalues, std::vector<Sink> sinks,
-    const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options = {},
-    const Executor& executor = SequentialExecutor{}) {
-    hierarchy.facts().require_dimension(dimension);
-    return detail::draw_isosurfaces<dimension>(hierarchy, isovalues,
-                                               detail::targets_of<dimension>(sinks), criterion,
-                                               bounds, options, executor);
+template <int dimension, class Sink>
+std::vector<Isosurface<dimension>> extract_isosurfaces(const Prerolls& prerolls,
+                                                       std::span<const double> isovalues,
+                                                       std::vector<Sink> sinks,
+                                                       const Projection& projection = {},
+                                                       const IsosurfaceOptions& options = {},
+                                                       const Work& work = {}) {
+    return detail::draw_isosurfaces<dimension>(
+        prerolls, isovalues, detail::targets_of<dimension>(sinks), projection, options, work);
 }
 template <class Grid, class Field, class Sink>
+    requires detail::FieldOfGrid<Field, Grid>
 auto extract_isosurfaces(const Grid& grid, const Field& field, std::span<const double> isovalues,
-                         std::vector<Sink> sinks, const Criterion& criterion, const Bounds& bounds,
-                         const IsosurfaceOptions& options = {},
-                         const Executor& executor = SequentialExecutor{}) {
+                         std::vector<Sink> sinks, const Projection& projection = {},
+                         const IsosurfaceOptions& options = {}, const Work& work = {}) {
     return extract_isosurfaces<detail::surface_dimension<Grid>()>(
-        erase(grid, field), isovalues, std::move(sinks), criterion, bounds, options, executor);
+        Prerolls(grid, field), isovalues, std::move(sinks), projection, options, work);
 }
 
 }  // namespace nestgrid

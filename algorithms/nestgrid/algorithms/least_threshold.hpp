@@ -8,18 +8,16 @@
 // are bfloat16, so that the elements that stop change at these thresholds only.
 // Promise: the threshold that is found keeps within the number, and it is 0, or the bfloat16 number
 // below it (less by 1/256 to 1/128 of it) does not.
-// Where many elements have the same indicator, they go on at one threshold, and the surface above it
-// may have far fewer triangles than asked for: end() and reason() say so, and what the next threshold
-// would give.
-// Not promised: that no lesser threshold keeps within the number. Triangles get fewer as the
-// threshold grows, but not at each step: a coarser element may cut a fold that finer ones miss.
-// Under criteria that blend, and between frames, vertices also move between bfloat16 numbers, and
-// some triangles come or go.
-// Cost: every trial ends when the number is exceeded. Threshold 0 is tried first. Thresholds are
-// then halved from `start` until the number is exceeded, or raised from there until it is kept, by
-// factors that grow; 7 bisections remain, for an octave has 128 numbers, and one more for each
-// doubling of the steps. From the range of the data, that is at most 10 times the number, and what
-// fitted before the last halving.
+// Where many elements have the same indicator, they go on at one threshold, and the surface above
+// it may have far fewer triangles than asked for: end() and reason() say so, and what the next
+// threshold would give. Not promised: that no lesser threshold keeps within the number. Triangles
+// get fewer as the threshold grows, but not at each step: a coarser element may cut a fold that
+// finer ones miss. Under criteria that blend, and between frames, vertices also move between
+// bfloat16 numbers, and some triangles come or go. Cost: every trial ends when the number is
+// exceeded. Threshold 0 is tried first. Thresholds are then halved from `start` until the number is
+// exceeded, or raised from there until it is kept, by factors that grow; 7 bisections remain, for
+// an octave has 128 numbers, and one more for each doubling of the steps. From the range of the
+// data, that is at most 10 times the number, and what fitted before the last halving.
 #pragma once
 
 #include <cstdint>

@@ -8,10 +8,11 @@
 // greatest numbers are those of the points; a distance elsewhere is greater by `reach` at most.
 #pragma once
 
-#include <nestgrid/algorithms/executor.hpp>
-#include <nestgrid/algorithms/indicator.hpp>
+#include <cstddef>
+
+#include <nestgrid/algorithms/prerolls.hpp>
 #include <nestgrid/algorithms/surface.hpp>
-#include <nestgrid/hierarchy.hpp>
+#include <nestgrid/algorithms/watch.hpp>
 
 namespace nestgrid {
 
@@ -31,23 +32,18 @@ struct MeasuredError {
     std::size_t points = 0;
 };
 
-/// Distances are infinite where only one of the surfaces is empty.
-/// \param drawn the surface of the projection, perhaps with collapsed edges
-/// \param whole the isosurface of all data: isosurface() without a criterion
+/// How far an isosurface is from the data and from that of all data. Distances are infinite where
+/// only one of the surfaces is empty.
+/// \param drawn the surface of a projection, perhaps with collapsed edges
+/// \param whole the isosurface of all data: isosurface() without a projection
 /// \param isovalue C
 /// \param points about how many, on each surface; each has those at its triangles at least
 /// \throw InvalidInput where the isovalue is not finite, `points` is 0, or the dimension is not 3
-template <class Real>
-MeasuredError measure_error(const Surface<3>& drawn, const Surface<3>& whole,
-                            const Hierarchy<Real>& hierarchy, double isovalue,
-                            std::size_t points = 200000,
-                            const Executor& executor = SequentialExecutor{});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-MeasuredError measure_error(const Surface<3>& drawn, const Surface<3>& whole, const Grid& grid,
-                            const Field& field, double isovalue, std::size_t points = 200000,
-                            const Executor& executor = SequentialExecutor{}) {
-    return measure_error(drawn, whole, erase(grid, field), isovalue, points, executor);
-}
+MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn,
+                            const Surface<3>& whole, double isovalue, std::size_t points = 200000,
+                            const Work& work = {});
+/// The same, which draws the isosurface of all data.
+MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
+                            std::size_t points = 200000, const Work& work = {});
 
 }  // namespace nestgrid

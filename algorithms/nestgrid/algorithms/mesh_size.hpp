@@ -12,6 +12,7 @@
 // for.
 #pragma once
 
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
@@ -20,11 +21,9 @@ namespace nestgrid {
 /// \param spread with the slope, and the factor, of the lenses to come
 /// \return lengths, in the units of the grid; infinite at nodes where no element may stop
 /// \throw InvalidInput where the factor of the spread is below 1 or its slope below 0
-SweptIndicator mesh_size(const Hierarchy<float>& hierarchy, const Spread& spread);
-SweptIndicator mesh_size(const Hierarchy<double>& hierarchy, const Spread& spread);
+SweptIndicator mesh_size(const FieldOnGrid& field, const Spread& spread);
 template <class Grid>
-    requires(!std::derived_from<Grid, Hierarchy<float>> &&
-             !std::derived_from<Grid, Hierarchy<double>>)
+    requires(!std::convertible_to<const Grid&, FieldOnGrid>)
 SweptIndicator mesh_size(const Grid& grid, const Spread& spread) {
     return mesh_size(erase(grid, ZeroField<Grid>{}), spread);
 }

@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
@@ -34,13 +35,6 @@ struct NormOptions {
 
 /// \throw InvalidInput where there is not one scale above 0 for each component, a value of a
 ///        component that counts is not finite, and for a spread as in measured_indicator()
-SweptIndicator norm_indicator(const Hierarchy<float>& hierarchy, const NormOptions& options = {});
-SweptIndicator norm_indicator(const Hierarchy<double>& hierarchy, const NormOptions& options = {});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator norm_indicator(const Grid& grid, const Field& field,
-                              const NormOptions& options = {}) {
-    return norm_indicator(erase(grid, field), options);
-}
+SweptIndicator norm_indicator(const FieldOnGrid& field, const NormOptions& options = {});
 
 }  // namespace nestgrid

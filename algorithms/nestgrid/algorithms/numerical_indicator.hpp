@@ -12,6 +12,7 @@
 // Memory, while it is made: 28 bytes a node more than swept_indicator.hpp says.
 #pragma once
 
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
@@ -23,15 +24,6 @@ struct NumericalOptions {
 
 /// \throw InvalidInput where a value of the field is not finite, and for a spread as in
 ///        measured_indicator()
-SweptIndicator numerical_indicator(const Hierarchy<float>& hierarchy,
-                                   const NumericalOptions& options = {});
-SweptIndicator numerical_indicator(const Hierarchy<double>& hierarchy,
-                                   const NumericalOptions& options = {});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator numerical_indicator(const Grid& grid, const Field& field,
-                                   const NumericalOptions& options = {}) {
-    return numerical_indicator(erase(grid, field), options);
-}
+SweptIndicator numerical_indicator(const FieldOnGrid& field, const NumericalOptions& options = {});
 
 }  // namespace nestgrid

@@ -6,15 +6,17 @@
 //
 // Each point descends in reference coordinates, where children lie as their rule says, so that no
 // search structure is needed and deformed elements are treated exactly; all points descend in one
-// walk. The functions below take a Hierarchy in the place of grid and field, too.
+// walk.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include <nestgrid/algorithms/discontinuous_data.hpp>
-#include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/isosurface_options.hpp>
+#include <nestgrid/algorithms/prerolls.hpp>
+#include <nestgrid/algorithms/projection.hpp>
+#include <nestgrid/algorithms/watch.hpp>
 
 namespace nestgrid {
 
@@ -38,33 +40,24 @@ struct ProbeResult {
 
 namespace detail {
 
-/// Defined for float and double. Without criterion and bounds: at full resolution.
-template <class Real>
-ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
-                  const Criterion& criterion, const Bounds& bounds);
-template <class Real>
-ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points);
-
 std::vector<double> only_values(ProbeResult result, const Point& x);
 
 }  // namespace detail
 
-/// The field at points.
-/// \param s nothing, for the data on the finest grid: no preroll is needed, and the grid is walked
-///        once only to find hanging nodes that it does not name; or a criterion, and Bounds of the
-///        same grid and field, such as a HierarchicalIndicator
-/// \throw InvalidInput where a coordinate is not finite, and for a criterion that is not saturated
-/// \throw GridError where the field has no value, or where the grid has changed since the bounds
-///        were computed
-template <class Real, class... S>
-ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points, const S&... s) {
-    return detail::probe<Real>(hierarchy, points, s...);
-}
-template <class Grid, class Field, class... S>
-    requires NodalField<Field, Grid> ProbeResult probe(const Grid& grid, const Field& field,
-                                                       std::span<const Point> points,
-                                                       const S&... s) {
-        return probe<typename Field::value_type>(erase(grid, field), points, s...);
+/// The field at points. The data on the finest grid need no preroll, and the grid is walked once
+/// only to find hanging nodes that it does not name.
+/// \throw InvalidInput where a coordinate is not finite, as Projection::check() and
+///        Prerolls::choose(), for collapses, and for a number of triangles
+/// \throw GridError where the field has no value, or where the grid has changed
+ProbeResult probe(const Prerolls& prerolls, std::span<const Point> points,
+                  const Projection& projection = {}, const Work& work = {});
+template <class Grid, class Field>
+    requires detail::FieldOfGrid<Field, Grid> ProbeResult probe(const Grid& grid,
+                                                                const Field& field,
+                                                                std::span<const Point> points,
+                                                                const Projection& projection = {},
+                                                                const Work& work = {}) {
+        return probe(Prerolls(grid, field), points, projection, work);
     }
 
 /// Data that jump between leaves, at points, at full resolution. A point on the border of several
@@ -76,16 +69,15 @@ ProbeResult probe(const DiscontinuousData& data, std::span<const Point> points);
 /// The field at one point.
 /// \return its components
 /// \throw InvalidInput also where the point lies outside the grid
-template <class Real, class... S>
-std::vector<double> probe_point(const Hierarchy<Real>& hierarchy, const Point& x, const S&... s) {
-    return detail::only_values(probe<Real>(hierarchy, std::span(&x, 1), s...), x);
+inline std::vector<double> probe_point(const Prerolls& prerolls, const Point& x,
+                                       const Projection& projection = {}, const Work& work = {}) {
+    return detail::only_values(probe(prerolls, std::span(&x, 1), projection, work), x);
 }
-template <class Grid, class Field, class... S>
-    requires NodalField<Field, Grid> std::vector<double> probe_point(const Grid& grid,
-                                                                     const Field& field,
-                                                                     const Point& x,
-                                                                     const S&... s) {
-        return probe_point<typename Field::value_type>(erase(grid, field), x, s...);
+template <class Grid, class Field>
+    requires detail::FieldOfGrid<Field, Grid> std::vector<double> probe_point(
+        const Grid& grid, const Field& field, const Point& x, const Projection& projection = {},
+        const Work& work = {}) {
+        return probe_point(Prerolls(grid, field), x, projection, work);
     }
 
 }  // namespace nestgrid

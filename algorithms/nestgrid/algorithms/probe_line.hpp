@@ -25,18 +25,18 @@ LineProbe make_line(const Point& from, const Point& to, std::size_t count);
 
 /// The field at `count` points from one to another, equally spaced, both included.
 /// \throw InvalidInput also where count is below 2
-template <class Real, class... S>
-LineProbe probe_line(const Hierarchy<Real>& hierarchy, const Point& from, const Point& to,
-                     std::size_t count, const S&... s) {
+inline LineProbe probe_line(const Prerolls& prerolls, const Point& from, const Point& to,
+                            std::size_t count, const Projection& projection = {},
+                            const Work& work = {}) {
     LineProbe line = detail::make_line(from, to, count);
-    static_cast<ProbeResult&>(line) = probe<Real>(hierarchy, line.points, s...);
+    static_cast<ProbeResult&>(line) = probe(prerolls, line.points, projection, work);
     return line;
 }
-template <class Grid, class Field, class... S>
-    requires NodalField<Field, Grid> LineProbe probe_line(const Grid& grid, const Field& field,
-                                                          const Point& from, const Point& to,
-                                                          std::size_t count, const S&... s) {
-        return probe_line<typename Field::value_type>(erase(grid, field), from, to, count, s...);
+template <class Grid, class Field>
+    requires detail::FieldOfGrid<Field, Grid> LineProbe
+    probe_line(const Grid& grid, const Field& field, const Point& from, const Point& to,
+               std::size_t count, const Projection& projection = {}, const Work& work = {}) {
+        return probe_line(Prerolls(grid, field), from, to, count, projection, work);
     }
 
 }  // namespace nestgrid

@@ -4,15 +4,20 @@
 // How finely a field is drawn, as a value: what a user chooses, whatever is drawn of it.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/algorithms/domains.hpp>
 
 namespace nestgrid {
+
+class Bounds;
 
 /// A lens by the size of elements (lens.hpp), in units of length.
 struct LensRequest {
@@ -57,6 +62,10 @@ struct Projection {
     /// P_S U within this, in the units of the data (refine_colours.hpp); 0 splits none. Beside
     /// neither collapses nor a number of triangles.
     double colour_tolerance = 0;
+    /// A criterion in the place of the threshold, the indicator and all that belongs to them, with
+    /// bounds for the search; both are set by under(). No preroll is made.
+    std::shared_ptr<const Criterion> criterion{};
+    const Bounds* bounds = nullptr;  ///< borrowed
 
     /// The threshold where none is searched for.
     double least_threshold() const {
@@ -64,11 +73,17 @@ struct Projection {
     }
     /// Whether it can be kept without a preroll: everything is drawn.
     bool draws_everything() const {
-        return indicator == "offset" && least_threshold() == 0 && max_triangles == 0 &&
-               blend == 1 && !lens;
+        return criterion == nullptr && indicator == "offset" && least_threshold() == 0 &&
+               max_triangles == 0 && blend == 1 && !lens;
     }
     /// Whether it does so with a threshold that is given, so that no other one is asked for.
     bool asks_for_everything() const { return threshold.has_value() && draws_everything(); }
+    /// Whether nothing chooses which elements stop but a threshold of offsets, or a number of
+    /// triangles.
+    bool asks_for_offsets() const {
+        return indicator == "offset" && blend == 1 && !lens && !region && !collapse &&
+               !keeps_distance && slice_distance == 0;
+    }
     /// Whether the threshold is the error that is kept, in units of the data.
     bool asks_for_error() const {
         return indicator == "error" || indicator == "deviation" || indicator == "cut";
@@ -82,5 +97,23 @@ struct Projection {
     /// \throw InvalidInput where a number is out of range, with its name
     void check() const;
 };
+
+/// The projection by a criterion.
+/// \param bounds of the same grid and field, borrowed: a HierarchicalIndicator, or other Bounds
+template <std::derived_from<Criterion> S>
+Projection under(S criterion, const Bounds& bounds) {
+    return {.criterion = std::make_shared<const S>(std::move(criterion)), .bounds = &bounds};
+}
+/// The projection within a threshold of an indicator that is bounds, too: a HierarchicalIndicator.
+template <std::derived_from<Indicator> I>
+    requires std::convertible_to<const I&, const Bounds&> Projection under(const I& indicator,
+                                                                           double threshold) {
+        return under(Threshold(&indicator, threshold), indicator);
+    }
+/// The same for a criterion of any class, which is borrowed.
+inline Projection under(const Criterion& criterion, const Bounds& bounds) {
+    return {.criterion = std::shared_ptr<const Criterion>(std::shared_ptr<void>(), &criterion),
+            .bounds = &bounds};
+}
 
 }  // namespace nestgrid

@@ -41,26 +41,17 @@ ColourRefinement refine_colours(Surface<3>& surface, double tolerance, const Pro
 ///        Triangles keep their element and their order, new vertices come behind the others
 /// \param tolerance by which a colour may differ from P_S U inside an element whose map is affine,
 ///        in units of the data. Where it is not, the same is tried, and probed points keep it
-/// \param s the criterion and the bounds that the surface was drawn with; nothing for one at full
-///        resolution
+/// \param prerolls of the hierarchy, or {grid, field}
+/// \param projection that the surface was drawn with
 /// \throw InvalidInput where the tolerance is not a positive number, or the surface has no
 ///        attributes, more of them than the field has components, or reference coordinates
-/// \throw GridError as probe()
-template <class Real, class... S>
-ColourRefinement refine_colours(Surface<3>& surface, const Hierarchy<Real>& hierarchy,
-                                double tolerance, const S&... s) {
+/// \throw InvalidInput, GridError as probe()
+inline ColourRefinement refine_colours(Surface<3>& surface, const Prerolls& prerolls,
+                                       double tolerance, const Projection& projection = {},
+                                       const Work& work = {}) {
     return detail::refine_colours(surface, tolerance, [&](std::span<const Point> points) {
-        return probe<Real>(hierarchy, points, s...);
+        return probe(prerolls, points, projection, work);
     });
 }
-template <class Grid, class Field, class... S>
-    requires NodalField<Field, Grid> ColourRefinement refine_colours(Surface<3>& surface,
-                                                                     const Grid& grid,
-                                                                     const Field& field,
-                                                                     double tolerance,
-                                                                     const S&... s) {
-        return refine_colours<typename Field::value_type>(surface, erase(grid, field), tolerance,
-                                                          s...);
-    }
 
 }  // namespace nestgrid

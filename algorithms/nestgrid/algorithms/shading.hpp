@@ -12,55 +12,21 @@
 // nothing depends on numbers of nodes or on threads.
 #pragma once
 
-#include <nestgrid/algorithms/executor.hpp>
-#include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/projected.hpp>
 #include <nestgrid/algorithms/shading_options.hpp>
 
 namespace nestgrid {
 
-/// Draws the elements at which `criterion` stops, with all components of the field as attributes.
-/// \param bounds of the same grid and field: a HierarchicalIndicator, or other Bounds
-/// \param executor of several threads, or of one; the result does not depend on it
-/// \throw InvalidInput where the hierarchy is not two-dimensional, the criterion is not saturated,
-///        or options.flatness is negative or not a number
-/// \throw GridError where the field has no value, or where the grid has changed since the bounds
-///        were computed
-template <class Real>
-Shading shading(const Hierarchy<Real>& hierarchy, const Criterion& criterion, const Bounds& bounds,
-                const ShadingOptions& options = {},
-                const Executor& executor = SequentialExecutor{});
-/// Draws a shading with S from options.threshold.
-/// \throw InvalidInput also where the threshold is negative or not a number
-template <class Real>
-Shading shading(const Hierarchy<Real>& hierarchy, const HierarchicalIndicator& indicator,
-                const ShadingOptions& options = {},
-                const Executor& executor = SequentialExecutor{});
-/// Draws a shading with S from options.threshold, after its own preroll.
-template <class Real>
-Shading shading(const Hierarchy<Real>& hierarchy, const ShadingOptions& options = {},
-                const Executor& executor = SequentialExecutor{});
-
-// Each also takes a grid and a field in the place of the hierarchy.
-
+/// Draws the elements at which the projection stops, with all components of the field as
+/// attributes: in the plane, or on the grid's surface in space.
+/// \throw InvalidInput also where options.flatness is negative or not a number
+Projected<Shading> shading(const Prerolls& prerolls, const Projection& projection = {},
+                           const ShadingOptions& options = {}, const Work& work = {});
 template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-Shading shading(const Grid& grid, const Field& field, const Criterion& criterion,
-                const Bounds& bounds, const ShadingOptions& options = {},
-                const Executor& executor = SequentialExecutor{}) {
-    return shading(erase(grid, field), criterion, bounds, options, executor);
-}
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-Shading shading(const Grid& grid, const Field& field, const HierarchicalIndicator& indicator,
-                const ShadingOptions& options = {},
-                const Executor& executor = SequentialExecutor{}) {
-    return shading(erase(grid, field), indicator, options, executor);
-}
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-Shading shading(const Grid& grid, const Field& field, const ShadingOptions& options = {},
-                const Executor& executor = SequentialExecutor{}) {
-    return shading(erase(grid, field), options, executor);
-}
+    requires detail::FieldOfGrid<Field, Grid> Projected<Shading> shading(
+        const Grid& grid, const Field& field, const Projection& projection = {},
+        const ShadingOptions& options = {}, const Work& work = {}) {
+        return shading(Prerolls(grid, field), projection, options, work);
+    }
 
 }  // namespace nestgrid

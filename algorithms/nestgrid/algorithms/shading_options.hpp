@@ -11,10 +11,9 @@
 
 namespace nestgrid {
 
-/// How finely shadings and height fields are drawn, and what is kept of them.
+/// How shadings and height fields are drawn, and what is kept of them. How finely, a Projection
+/// says.
 struct ShadingOptions {
-    /// epsilon, in the units of the data: offsets up to it are projected away. At least 0.
-    double threshold = 0;
     /// Quadrilaterals in which some component differs by more than this from two triangles get a
     /// vertex in their middle. At least 0, in the units of the data.
     double flatness = std::numeric_limits<double>::infinity();

@@ -17,10 +17,9 @@
 // or NodeLevels to follow the function more closely.
 #pragma once
 
-#include <nestgrid/algorithms/executor.hpp>
-#include <nestgrid/algorithms/indicator.hpp>
 #include <nestgrid/algorithms/isosurface_options.hpp>
 #include <nestgrid/algorithms/level_function.hpp>
+#include <nestgrid/algorithms/projected.hpp>
 
 namespace nestgrid {
 
@@ -28,45 +27,20 @@ namespace nestgrid {
 /// component 0: on every triangle it differs by at most this from U, at the same place.
 using Slice = Isosurface<3>;
 
-/// The slice under the projection with `criterion`.
-/// \param bounds of the same grid and field
+/// The slice along the zero of a function. Where all data are asked for, it needs no preroll.
+/// Colours keep the threshold where edges are collapsed, or the least one with a number of
+/// triangles.
 /// \param options vertices are put at nodes in any case
-/// \throw InvalidInput where the hierarchy has another dimension, or a function has no finite value
-/// \throw GridError as isosurface()
-template <class Real>
-Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
-            const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options = {},
-            const Executor& executor = SequentialExecutor{});
-/// Draws the slice with S from options.threshold or options.max_triangles.
-template <class Real>
-Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
-            const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
-            const Executor& executor = SequentialExecutor{});
-/// Draws the slice like that after a preroll of its own. At threshold 0, and without a budget, it
-/// needs none.
-template <class Real>
-Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
-            const IsosurfaceOptions& options = {}, const Executor& executor = SequentialExecutor{});
-
-// Each also takes a grid and a field in the place of the hierarchy.
-
+/// \throw InvalidInput also where the function has no finite value
+Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
+                       const Projection& projection = {}, const IsosurfaceOptions& options = {},
+                       const Work& work = {});
 template <class Grid, class Field>
-Slice slice(const Grid& grid, const Field& field, const LevelFunction& function,
-            const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options = {},
-            const Executor& executor = SequentialExecutor{}) {
-    return slice(erase(grid, field), function, criterion, bounds, options, executor);
-}
-template <class Grid, class Field>
-Slice slice(const Grid& grid, const Field& field, const LevelFunction& function,
-            const HierarchicalIndicator& indicator, const IsosurfaceOptions& options = {},
-            const Executor& executor = SequentialExecutor{}) {
-    return slice(erase(grid, field), function, indicator, options, executor);
-}
-template <class Grid, class Field>
-Slice slice(const Grid& grid, const Field& field, const LevelFunction& function,
-            const IsosurfaceOptions& options = {},
-            const Executor& executor = SequentialExecutor{}) {
-    return slice(erase(grid, field), function, options, executor);
-}
+    requires detail::FieldOfGrid<Field, Grid> Projected<Slice> slice(
+        const Grid& grid, const Field& field, const LevelFunction& function,
+        const Projection& projection = {}, const IsosurfaceOptions& options = {},
+        const Work& work = {}) {
+        return slice(Prerolls(grid, field), function, projection, options, work);
+    }
 
 }  // namespace nestgrid

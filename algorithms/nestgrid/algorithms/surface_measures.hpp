@@ -11,8 +11,10 @@
 #include <span>
 #include <vector>
 
-#include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/error.hpp>
+#include <nestgrid/algorithms/prerolls.hpp>
+#include <nestgrid/algorithms/projection.hpp>
+#include <nestgrid/algorithms/surface.hpp>
+#include <nestgrid/algorithms/watch.hpp>
 
 namespace nestgrid {
 
@@ -44,36 +46,10 @@ SurfaceMeasurement measure_surface(const Surface<3>& surface);
 std::vector<double> flux(const Surface<3>& surface, const SurfaceMeasurement& measured,
                          std::size_t first = 0);
 
-/// Volume of the part of the domain where low <= U < high, under the projection with a threshold:
-/// the difference of two capped surfaces, of which nothing is kept.
-/// \throw InvalidInput unless low <= high
-/// A hierarchy that has another dimension than 3 is InvalidInput.
-template <class Real>
-double volume_between(const Hierarchy<Real>& hierarchy, double low, double high,
-                      const HierarchicalIndicator& indicator, double threshold = 0) {
-    if (!(low <= high)) throw InvalidInput("the lower isovalue is not below the upper one");
-    hierarchy.facts().require_one_process("a volume between isovalues");
-    Coarse coarse;
-    Family family;
-    hierarchy.coarse(hierarchy.open().get(), 0, coarse, family);
-    const Point origin = coarse.corners[0];
-    std::array<double, 2> volume{0, 0};
-    const auto adder = [&origin](double* sum) {
-        return SimplexStream<3>([sum, &origin](const std::array<Point, 3>& x) {
-            *sum += dot(x[0] - origin, cross(x[1] - origin, x[2] - origin)) / 6;
-        });
-    };
-    const std::array<double, 2> isovalues{low, high};
-    extract_isosurfaces<3>(hierarchy, std::span<const double>(isovalues),
-                           std::vector{adder(&volume[0]), adder(&volume[1])},
-                           Threshold(&indicator, threshold), indicator, {.cap = true});
-    return volume[0] - volume[1];
-}
-template <class Grid, class Field>
-double volume_between(const Grid& grid, const Field& field, double low, double high,
-                      const HierarchicalIndicator& indicator, double threshold = 0) {
-    static_assert(Grid::dimension == 3, "volumes need a grid of dimension 3");
-    return volume_between(erase(grid, field), low, high, indicator, threshold);
-}
+/// Volume of the part of the domain of dimension 3 where low <= U < high: the difference of two
+/// capped surfaces, of which nothing is kept.
+/// \throw InvalidInput unless low <= high, and as extract_isosurfaces()
+double volume_between(const Prerolls& prerolls, double low, double high,
+                      const Projection& projection = {}, const Work& work = {});
 
 }  // namespace nestgrid

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include <nestgrid/algorithms/detail/node_table.hpp>
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
 
 namespace nestgrid {
@@ -79,15 +80,7 @@ private:
 /// The indicator of a measure of all components of a field.
 /// \throw InvalidInput where the measure is negative or not a number, and where the factor of the
 ///        spread is below 1 or its slope below 0
-SweptIndicator measured_indicator(const Hierarchy<float>& hierarchy, const Measure& measure,
+SweptIndicator measured_indicator(const FieldOnGrid& field, const Measure& measure,
                                   const Spread& spread = {});
-SweptIndicator measured_indicator(const Hierarchy<double>& hierarchy, const Measure& measure,
-                                  const Spread& spread = {});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator measured_indicator(const Grid& grid, const Field& field, const Measure& measure,
-                                  const Spread& spread = {}) {
-    return measured_indicator(erase(grid, field), measure, spread);
-}
 
 }  // namespace nestgrid

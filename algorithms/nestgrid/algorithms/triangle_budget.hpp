@@ -97,14 +97,6 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, const LevelFunct
                                             max_triangles, options, executor);
     });
 }
-template <class Grid, class Field, MakesCriterion Make, RangedBounds Ranged>
-TriangleBudget find_threshold(const Grid& grid, const Field& field, double isovalue,
-                              const Make& criterion_at, const Ranged& bounds,
-                              std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
-                              const Executor& executor = SequentialExecutor{}) {
-    return find_threshold<detail::surface_dimension<Grid>()>(
-        erase(grid, field), isovalue, criterion_at, bounds, max_triangles, options, executor);
-}
 
 /// The same for the shading of a hierarchy of dimension 2, or for its height fields, which all have
 /// as many triangles. Of the options, flatness and progress count.
@@ -115,19 +107,10 @@ TriangleBudget find_shading_threshold(const Hierarchy<Real>& hierarchy, const Ma
                                       const Executor& executor = SequentialExecutor{}) {
     return least_threshold(
         [&](double threshold, std::uint64_t most) {
-            return count_triangles(hierarchy, criterion_at(threshold), bounds, most, options,
-                                   executor);
+            return count_triangles(hierarchy, under(criterion_at(threshold), bounds), most, options,
+                                   {executor});
         },
         bounds.greatest() - bounds.least(), max_triangles);
-}
-template <class Grid, class Field, MakesCriterion Make, RangedBounds Ranged>
-TriangleBudget find_shading_threshold(const Grid& grid, const Field& field,
-                                      const Make& criterion_at, const Ranged& bounds,
-                                      std::uint64_t max_triangles,
-                                      const ShadingOptions& options = {},
-                                      const Executor& executor = SequentialExecutor{}) {
-    return find_shading_threshold(erase(grid, field), criterion_at, bounds, max_triangles, options,
-                                  executor);
 }
 
 /// The same for an isosurface with the indicator's own criterion.
@@ -140,28 +123,5 @@ template <int dimension, class Real, RangedBounds Ranged>
         return find_threshold<dimension>(hierarchy, isovalue, everywhere, indicator, max_triangles,
                                          options, executor);
     }
-template <class Grid, class Field, RangedBounds Ranged>
-    requires std::derived_from<Ranged, Indicator> TriangleBudget
-    find_threshold(const Grid& grid, const Field& field, double isovalue, const Ranged& indicator,
-                   std::uint64_t max_triangles, const IsosurfaceOptions& options = {},
-                   const Executor& executor = SequentialExecutor{}) {
-        return find_threshold<detail::surface_dimension<Grid>()>(
-            erase(grid, field), isovalue, indicator, max_triangles, options, executor);
-    }
-
-/// S from options.threshold or options.max_triangles.
-/// \throw InvalidInput where the threshold is negative or not a number, where even the coarsest
-///        surface has more triangles than asked for, and for a hierarchy of another dimension
-template <int dimension, class Real>
-Threshold criterion_for(const Hierarchy<Real>& hierarchy, double isovalue,
-                        const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
-                        const Executor& executor = SequentialExecutor{});
-template <class Grid, class Field>
-Threshold criterion_for(const Grid& grid, const Field& field, double isovalue,
-                        const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
-                        const Executor& executor = SequentialExecutor{}) {
-    return nestgrid::criterion_for<detail::surface_dimension<Grid>()>(erase(grid, field), isovalue,
-                                                                      indicator, options, executor);
-}
 
 }  // namespace nestgrid

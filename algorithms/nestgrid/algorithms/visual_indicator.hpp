@@ -15,6 +15,7 @@
 
 #include <optional>
 
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
@@ -29,15 +30,6 @@ struct VisualOptions {
 
 /// \throw InvalidInput where tau is negative or not finite, a value of the field is not finite, and
 ///        for a spread as in measured_indicator()
-SweptIndicator visual_indicator(const Hierarchy<float>& hierarchy,
-                                const VisualOptions& options = {});
-SweptIndicator visual_indicator(const Hierarchy<double>& hierarchy,
-                                const VisualOptions& options = {});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator visual_indicator(const Grid& grid, const Field& field,
-                                const VisualOptions& options = {}) {
-    return visual_indicator(erase(grid, field), options);
-}
+SweptIndicator visual_indicator(const FieldOnGrid& field, const VisualOptions& options = {});
 
 }  // namespace nestgrid

@@ -13,6 +13,7 @@
 // Memory, while it is made: about 130 bytes a node more than swept_indicator.hpp says.
 #pragma once
 
+#include <nestgrid/algorithms/field_on_grid.hpp>
 #include <nestgrid/algorithms/swept_indicator.hpp>
 
 namespace nestgrid {
@@ -32,15 +33,6 @@ struct WaveletOptions {
 /// Of component 0.
 /// \throw InvalidInput where a value of the field is not finite, and for a spread as in
 ///        measured_indicator()
-SweptIndicator wavelet_indicator(const Hierarchy<float>& hierarchy,
-                                 const WaveletOptions& options = {});
-SweptIndicator wavelet_indicator(const Hierarchy<double>& hierarchy,
-                                 const WaveletOptions& options = {});
-template <class Grid, class Field>
-    requires(!detail::AnyHierarchy<Grid>)
-SweptIndicator wavelet_indicator(const Grid& grid, const Field& field,
-                                 const WaveletOptions& options = {}) {
-    return wavelet_indicator(erase(grid, field), options);
-}
+SweptIndicator wavelet_indicator(const FieldOnGrid& field, const WaveletOptions& options = {});
 
 }  // namespace nestgrid

@@ -120,31 +120,31 @@ void write_isosurfaces(const std::string& name, const Grid& grid, const Field& f
     const IsosurfaceOptions options{.normals = true};
     const auto draw = [&](const std::string& which, const Criterion& s, double threshold,
                           const IsosurfaceOptions& o) {
-        write_surface(name + which, isosurface(grid, field, 40, s, offsets, o), threshold);
+        write_surface(name + which, isosurface(grid, field, 40, under(s, offsets), o), threshold);
     };
     draw("_full", Threshold(&offsets, 0), 0, options);
     draw("_coarse", Threshold(&offsets, 12), 12, options);
     draw("_cap", Threshold(&offsets, 12), 12, {.normals = false, .cap = true, .at_nodes = true});
-    const double found = find_threshold(grid, field, 40, offsets, 1500, options).threshold;
+    const double found =
+        find_threshold<3>(erase(grid, field), 40, offsets, 1500, options).threshold;
     const IsosurfaceOptions finest{.cuts = Cuts::finest, .normals = true};
     draw("_budget", Threshold(&offsets, found), found, finest);
     draw("_finest", Threshold(&offsets, 12), 12, finest);
     const HierarchicalIndicator spread(grid, field, Spread{.factor = 2});
     write_surface(name + "_blend",
-                  isosurface(grid, field, 40, Blended(&spread, 9, 2), spread, options), 9);
+                  isosurface(grid, field, 40, under(Blended(&spread, 9, 2), spread), options), 9);
     const auto visual =
-        visual_indicator(grid, field, {.tau = 0x1p-20 * (offsets.greatest() - offsets.least())});
+        visual_indicator({grid, field}, {.tau = 0x1p-20 * (offsets.greatest() - offsets.least())});
     draw("_visual", Threshold(&visual, 0.4), 0.4, options);
-    const auto numerical = numerical_indicator(grid, field);
+    const auto numerical = numerical_indicator({grid, field});
     draw("_numerical", Threshold(&numerical, 30), 30, options);
-    const auto wavelet = wavelet_indicator(grid, field);
+    const auto wavelet = wavelet_indicator({grid, field});
     draw("_wavelet", Threshold(&wavelet, 8), 8, options);
     const auto size = mesh_size(grid, Spread{.slope = 0.5});
     const Lens lens(&size, Ball{{4, 4, 20}, 3}, {.finest = 1});
     const double any = std::numeric_limits<double>::infinity();
     draw("_lens", Threshold(&offsets, any) && lens, any, options);
-    const auto result =
-        isosurface(grid, field, 40, Threshold(&offsets, 12), offsets, {.elements = true});
+    const auto result = isosurface(grid, field, 40, under(offsets, 12), {.elements = true});
     const Surface<2> edges = outlines(result.surface);
     write(name + "_outlines.vertices", edges.vertices);
     write(name + "_outlines.segments", edges.simplices);
@@ -157,13 +157,13 @@ void write_slices(const std::string& name, const Grid& grid, const Field& field,
     const Sphere sphere({4, 4, 20}, 5);
     const Cylinder cylinder({4, 4, 20}, {0, 0, 1}, 2);
     const Threshold s(&offsets, 12);
-    write_surface(name + "_plane", slice(grid, field, plane, IsosurfaceOptions{}), 0);
-    write_surface(name + "_sphere", slice(grid, field, sphere, s, offsets), 12);
-    write_surface(name + "_cylinder", slice(grid, field, cylinder, s, offsets, {.normals = true}),
-                  12);
+    write_surface(name + "_plane", slice(grid, field, plane), 0);
+    write_surface(name + "_sphere", slice(grid, field, sphere, under(s, offsets)), 12);
+    write_surface(name + "_cylinder",
+                  slice(grid, field, cylinder, under(s, offsets), {.normals = true}), 12);
     const auto at = [&](double threshold) { return Threshold(&offsets, threshold); };
     const double found = find_threshold(erase(grid, field), plane, at, offsets, 300).threshold;
-    const auto budget = slice(grid, field, plane, at(found), offsets);
+    const auto budget = slice(grid, field, plane, under(at(found), offsets));
     write_surface(name + "_budget_slice", budget, found);
     const std::vector<double> values{-50, 0, 50};
     write_lines(name + "_slice_lines", isolines(budget.surface, 0, values));
@@ -176,8 +176,7 @@ void write_probes(const std::string& name, const Grid& grid, const Field& field,
     for (int i = 0; i < 100; ++i) points.push_back({-3 + 0.2 * i, 1 + 0.07 * i, 0.25 + 0.45 * i});
     write(name + "_probe.points", points);
     write(name + "_probe.values", probe(grid, field, points).values);
-    write(name + "_probe_coarse.values",
-          probe(grid, field, points, Threshold(&offsets, 12), offsets).values);
+    write(name + "_probe_coarse.values", probe(grid, field, points, under(offsets, 12)).values);
 }
 
 void write_volumes() {
@@ -196,8 +195,8 @@ void write_volumes() {
         write(name + "_later.samples", later);
         const LatticeField field_later(grid, std::span<const float>(later));
         const HierarchicalIndicator offsets_later(grid, field_later);
-        const SweptIndicator wavelets = wavelet_indicator(grid, field);
-        const SweptIndicator wavelets_later = wavelet_indicator(grid, field_later);
+        const SweptIndicator wavelets = wavelet_indicator({grid, field});
+        const SweptIndicator wavelets_later = wavelet_indicator({grid, field_later});
         for (const bool cubic : {false, true}) {
             const std::array times{0.0, 1.0, 2.0};
             const auto weights =
@@ -205,12 +204,12 @@ void write_volumes() {
             const KeyFrames frames({&offsets, &offsets_later, &offsets}, weights);
             const Between between({&field, &field_later, &field}, weights);
             write_surface(name + (cubic ? "_cubic" : "_between"),
-                          isosurface(grid, between, 40, Threshold(&frames, 12), frames,
+                          isosurface(grid, between, 40, under(frames, 12),
                                      IsosurfaceOptions{.normals = true}),
                           12);
             const SweptKeyFrames swept({&wavelets, &wavelets_later, &wavelets}, weights);
             write_surface(name + (cubic ? "_cubic" : "_between") + "_wavelet",
-                          isosurface(grid, between, 40, Threshold(&swept, 8), frames,
+                          isosurface(grid, between, 40, under(Threshold(&swept, 8), frames),
                                      IsosurfaceOptions{.normals = true}),
                           8);
         }
@@ -227,8 +226,8 @@ void write_type(const std::string& type) {
         write(name + ".samples", samples);
         const LatticeBisection<3> grid(geometry<3>(c_order));
         const LatticeField field(grid, std::span<const Sample>(samples));
-        write_surface(name, isosurface(grid, field, shift + 9.5, {.threshold = 3, .normals = true}),
-                      3);
+        write_surface(name,
+                      isosurface(grid, field, shift + 9.5, {.threshold = 3}, {.normals = true}), 3);
         const auto flat = sample<Sample, 2>(c_order, 30, shift);
         write(name + "_flat.samples", flat);
         const LatticeBisection<2> plane(geometry<2>(c_order));
@@ -292,7 +291,7 @@ void write_octree() {
     write("octree.samples", values);
     const LinearOctreeField<LinearOctree<3, OctreeLeaf>, double, std::uint32_t> field(grid, nodes,
                                                                                       values);
-    write_surface("octree", isosurface(grid, field, 0.3, {.threshold = 0.05, .normals = true}),
+    write_surface("octree", isosurface(grid, field, 0.3, {.threshold = 0.05}, {.normals = true}),
                   0.05);
 }
 
@@ -322,7 +321,7 @@ void write_stored() {
     write_hierarchy(grid, folder / "frames.nestgrid", {both},
                     {.times = {1, 3}, .compression = CompressionOptions{}});
     const NodeField field(grid, values);
-    write_surface("stored", isosurface(grid, field, 0.3, {.threshold = 0.05, .normals = true}),
+    write_surface("stored", isosurface(grid, field, 0.3, {.threshold = 0.05}, {.normals = true}),
                   0.05);
 }
 

@@ -83,9 +83,9 @@ TYPED_TEST(Explored, FramesHaveTheBitsOfTheLibrary) {
         for (const double part : {0.0, 0.05}) {
             const double threshold = part * (indicator.greatest() - indicator.least());
             const Threshold s(&indicator, threshold);
-            const auto surface = isosurface(grid, field, isovalue, s, indicator,
+            const auto surface = isosurface(grid, field, isovalue, under(s, indicator),
                                             {.cuts = Cuts::finest, .normals = true});
-            const auto cut = slice(grid, field, plane, s, indicator);
+            const auto cut = slice(grid, field, plane, under(s, indicator));
             const Frame frame = frame_of(
                 explorer, "isovalue=" + text_of(isovalue) + "&threshold=" + text_of(threshold) +
                               "&plane=0.41,0.5,0.5,1,0.2,0.1&normals=float32&outlines=on");
@@ -183,7 +183,7 @@ TEST(SettledFrames, HaveTheThresholdOfTheSearch) {
             frame_of(volume.explorer, request + "&motion=moving");
             const Frame frame = frame_of(volume.explorer, request);
             const TriangleBudget best =
-                find_threshold(grid, samples, field.isovalue, indicator, goal);
+                find_threshold<3>(erase(grid, samples), field.isovalue, indicator, goal);
             EXPECT_EQ(frame.number("triangles"), double(best.triangles)) << goal;
             EXPECT_EQ(frame.number("threshold"), best.threshold) << goal;
         }
@@ -244,7 +244,7 @@ TYPED_TEST(Explored, FramesKeepErrors) {
         const SequentialExecutor executor;
         Explorer explorer(borrowed_field(grid, samples.values), executor);
         const double error = 0.1 * (deviations.greatest() - deviations.least());
-        const auto surface = isosurface(grid, field, 0.0, deviations, {.threshold = error});
+        const auto surface = isosurface(grid, field, 0.0, under(deviations, error));
         const std::string what = "isovalue=0&threshold=" + text_of(error) + "&indicator=";
         const Frame frame = frame_of(explorer, what + "deviation");
         expect_part(frame, "isosurface", surface.surface);
@@ -273,14 +273,15 @@ TYPED_TEST(Explored, ErrorsAreThoseOfTheDataAndOfTheSurfaceOnceNothingMoves) {
     for_each_error<TypeParam>([](Explorer& explorer, const auto& grid, const auto& field,
                                  const HierarchicalIndicator& deviations, double error) {
         const std::string what = "isovalue=0&error=" + text_of(error);
-        const auto of_data = isosurface(grid, field, at_zero, deviations, {.threshold = error});
+        const auto of_data = isosurface(grid, field, at_zero, under(deviations, error));
         const Frame moving = frame_of(explorer, what + "&motion=moving");
         expect_part(moving, "isosurface", of_data.surface);
         EXPECT_FALSE(moving.has_number("distance"));
-        const SweptIndicator cuts = cut_deviations(grid, field, std::span(&at_zero, 1), deviations);
+        const SweptIndicator cuts =
+            cut_deviations({grid, field}, std::span(&at_zero, 1), deviations);
         const Threshold s(&cuts, error);
         const bool of_one = cuts_are_errors(erase(grid, field).facts());
-        const auto of_surface = isosurface(grid, field, at_zero, s, deviations);
+        const auto of_surface = isosurface(grid, field, at_zero, under(s, deviations));
         const Frame settled = frame_of(explorer, what);
         expect_part(settled, "isosurface", of_one ? of_surface.surface : of_data.surface);
         EXPECT_EQ(settled.number("error_bound"),
@@ -297,9 +298,10 @@ TYPED_TEST(Explored, DistancesAreThoseOfSlopes) {
                                  const HierarchicalIndicator& deviations, double error) {
         constexpr double distance = 0.04;
         const SweptIndicator slopes =
-            slope_deviations(grid, field, std::span(&at_zero, 1), deviations);
-        const auto expected = isosurface(grid, field, at_zero, Threshold(&slopes, distance),
-                                         deviations, {.cuts = Cuts::finest});
+            slope_deviations({grid, field}, std::span(&at_zero, 1), deviations);
+        const auto expected =
+            isosurface(grid, field, at_zero, under(Threshold(&slopes, distance), deviations),
+                       {.cuts = Cuts::finest});
         const auto at_distance = [&](double d) {
             return frame_of(explorer, "isovalue=0&distance=" + text_of(d));
         };
@@ -321,12 +323,13 @@ TYPED_TEST(Explored, CollapsedFramesKeepTheError) {
     for_each_error<TypeParam>([](Explorer& explorer, const auto& grid, const auto& field,
                                  const HierarchicalIndicator& deviations, double error) {
         const std::string what = "isovalue=0&collapse=on&error=" + text_of(error);
-        const SweptIndicator cuts = cut_deviations(grid, field, std::span(&at_zero, 1), deviations);
+        const SweptIndicator cuts =
+            cut_deviations({grid, field}, std::span(&at_zero, 1), deviations);
         const bool of_one = cuts_are_errors(erase(grid, field).facts());
         const Indicator& indicator = of_one ? static_cast<const Indicator&>(cuts) : deviations;
-        auto drawn = isosurface(grid, field, at_zero, Threshold(&indicator, collapse_start * error),
-                                deviations);
-        collapse(drawn.surface, grid, field, at_zero, deviations, {.error = error})
+        auto drawn = isosurface(grid, field, at_zero,
+                                under(Threshold(&indicator, collapse_start * error), deviations));
+        collapse(drawn.surface, erase(grid, field), at_zero, deviations, {.error = error})
             .hand_to(drawn, drawn.surface_error);
         const Frame frame = frame_of(explorer, what);
         expect_part(frame, "isosurface", drawn.surface);
@@ -334,7 +337,7 @@ TYPED_TEST(Explored, CollapsedFramesKeepTheError) {
         EXPECT_FALSE(frame.has_number("distance"));
         // Nothing is collapsed while something moves.
         expect_part(frame_of(explorer, what + "&motion=moving"), "isosurface",
-                    isosurface(grid, field, at_zero, deviations, {.threshold = error}).surface);
+                    isosurface(grid, field, at_zero, under(deviations, error)).surface);
     });
 }
 
@@ -382,15 +385,15 @@ TEST(Times, GiveFramesThemselvesAndWhatLiesBetween) {
     const Threshold s(&indicator, 0.02);
     const IsosurfaceOptions finest{.cuts = Cuts::finest};
     expect_part(frame_of(explorer, what + "&time=3"), "isosurface",
-                isosurface(grid, between, 0.4, s, indicator, finest).surface);
+                isosurface(grid, between, 0.4, under(s, indicator), finest).surface);
 
     EXPECT_TRUE(frame_of(explorer, what + "&time=6&indicator=wavelet").has("isosurface"));
-    const SweptIndicator wavelets_of_a = wavelet_indicator(grid, a);
-    const SweptIndicator wavelets_of_b = wavelet_indicator(grid, b);
+    const SweptIndicator wavelets_of_a = wavelet_indicator({grid, a});
+    const SweptIndicator wavelets_of_b = wavelet_indicator({grid, b});
     const SweptKeyFrames wavelets({&wavelets_of_a, &wavelets_of_b}, weights);
-    expect_part(
-        frame_of(explorer, what + "&time=3&indicator=wavelet"), "isosurface",
-        isosurface(grid, between, 0.4, Threshold(&wavelets, 0.02), indicator, finest).surface);
+    expect_part(frame_of(explorer, what + "&time=3&indicator=wavelet"), "isosurface",
+                isosurface(grid, between, 0.4, under(Threshold(&wavelets, 0.02), indicator), finest)
+                    .surface);
 
     constexpr double isovalue = 0.4;
     const HierarchicalIndicator errors_of_a(grid, a, NodeError::deviation);
@@ -398,18 +401,20 @@ TEST(Times, GiveFramesThemselvesAndWhatLiesBetween) {
     const KeyFrames errors({&errors_of_a, &errors_of_b}, weights);
     // Between frames errors are those of the frames, without a walk for each time.
     expect_part(frame_of(explorer, "isovalue=0.4&error=0.05&time=3"), "isosurface",
-                isosurface(grid, between, isovalue, Threshold(&errors, 0.05), errors).surface);
-    const SweptIndicator slopes = slope_deviations(grid, between, std::span(&isovalue, 1), errors);
-    expect_part(
-        frame_of(explorer, "isovalue=0.4&distance=0.01&time=3"), "isosurface",
-        isosurface(grid, between, isovalue, Threshold(&slopes, 0.01), errors, finest).surface);
+                isosurface(grid, between, isovalue, under(errors, 0.05)).surface);
+    const SweptIndicator slopes =
+        slope_deviations({grid, between}, std::span(&isovalue, 1), errors);
+    expect_part(frame_of(explorer, "isovalue=0.4&distance=0.01&time=3"), "isosurface",
+                isosurface(grid, between, isovalue, under(Threshold(&slopes, 0.01), errors), finest)
+                    .surface);
     EXPECT_TRUE(frame_of(explorer, what + "&time=3&indicator=visual").has("isosurface"));
     // The same isovalue at another time is another surface, as is another isovalue.
     for (const double value : {isovalue, 0.1}) {
-        const SweptIndicator of_first = cut_deviations(grid, a, std::span(&value, 1), errors_of_a);
-        expect_part(frame_of(explorer, "isovalue=" + text_of(value) + "&error=0.005&time=2"),
-                    "isosurface",
-                    isosurface(grid, a, value, Threshold(&of_first, 0.005), errors_of_a).surface);
+        const SweptIndicator of_first =
+            cut_deviations({grid, a}, std::span(&value, 1), errors_of_a);
+        expect_part(
+            frame_of(explorer, "isovalue=" + text_of(value) + "&error=0.005&time=2"), "isosurface",
+            isosurface(grid, a, value, under(Threshold(&of_first, 0.005), errors_of_a)).surface);
     }
     expect_refused([&] { explorer.frame(what + "&time=7"); }, "7");
     expect_refused([&] { alone.frame(what + "&time=7"); }, "one frame");

@@ -117,7 +117,8 @@ Surface<3> sphere() {
     }
     const LatticeBisection<3> grid({.samples = {17, 17, 17}});
     const LatticeField field(grid, std::span<const double>(samples));
-    Surface<3> surface = isosurface(grid, field, 6.0, {.threshold = 0.1, .normals = true}).surface;
+    Surface<3> surface =
+        isosurface(grid, field, 6.0, {.threshold = 0.1}, {.normals = true}).surface;
     for (const Point& x : surface.vertices) {
         surface.attributes.push_back(x[0]);
         surface.attributes.push_back(x[2] - 8);
