@@ -6,6 +6,17 @@
 
 namespace nestgrid::engine {
 
+/// Polynomials, with the field that they borrow.
+struct PolynomialsOfField {
+    explicit PolynomialsOfField(const FieldOnGrid& of)
+        : field{of}, data{field.visit([](const auto& hierarchy) {
+              return HighOrder(hierarchy);
+          })} {}
+
+    FieldOnGrid field;
+    HighOrder data;
+};
+
 namespace {
 
 /// Looks for a leaf of a degree above 1.
@@ -46,22 +57,15 @@ private:
     std::deque<Family> families_;  // of each level on the way down
 };
 
-/// Polynomials, with the field that they borrow.
-struct OfField {
-    FieldOnGrid field;
-    HighOrder data;
-};
-
 }  // namespace
 
 std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field) {
-    return field.visit([&](const auto& hierarchy) -> std::shared_ptr<const HighOrder> {
-        if (!hierarchy.offers(Feature::degree) || !DegreeSearch(hierarchy).finds_one()) {
-            return nullptr;
-        }
-        const auto kept = std::make_shared<const OfField>(OfField{field, HighOrder(hierarchy)});
-        return {kept, &kept->data};
+    const bool has_degree = field.visit([](const auto& hierarchy) {
+        return hierarchy.offers(Feature::degree) && DegreeSearch(hierarchy).finds_one();
     });
+    if (!has_degree) return nullptr;
+    const auto kept = std::make_shared<const PolynomialsOfField>(field);
+    return {kept, &kept->data};
 }
 
 }  // namespace nestgrid::engine
