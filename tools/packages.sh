@@ -5,7 +5,7 @@
 
 build_packages=(cmake ninja-build g++ pkgconf libboost-graph-dev libvtk9-dev libcli11-dev zlib1g-dev
     libcgal-dev libtbb-dev libtet1.5-dev libmuparser-dev libjsoncpp-dev libinsighttoolkit5-dev)
-test_packages=(clang gfortran libgtest-dev libopenmesh-dev libdeal.ii-dev libp4est-dev libdune-grid-dev
+test_packages=(clang gfortran libgtest-dev libopenmesh-dev libdeal.ii-dev mpi-default-dev libp4est-dev libdune-grid-dev
     libdune-functions-dev libdune-istl-dev libalberta-dev openmpi-bin tetgen libopenvdb-dev libzstd-dev valgrind
     doxygen python3 mandoc zsh python3-nibabel python3-vtk9 teem-apps
     python3-meshio assimp-utils gmsh admesh python3-pydicom dcmtk libgdcm-tools)

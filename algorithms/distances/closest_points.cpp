@@ -79,4 +79,11 @@ bool ClosestPoints::is_within(const Point& x, double limit, std::uint32_t& near)
                            });
 }
 
+bool ClosestPoints::holds(std::uint32_t triangle, std::span<const Point> points,
+                          double limit) const {
+    const Triangle t = this->triangle(triangle);
+    return std::all_of(points.begin(), points.end(),
+                       [&](const Point& x) { return square_distance(x, t) <= limit * limit; });
+}
+
 }  // namespace nestgrid::engine

@@ -41,6 +41,8 @@ public:
     /// \param near a triangle that is looked at first, and afterwards one that is near enough; 0
     ///        for the first point
     bool is_within(const Point& x, double limit, std::uint32_t& near) const;
+    /// Whether a triangle is within a limit of all points, and so of all between them.
+    bool holds(std::uint32_t triangle, std::span<const Point> points, double limit) const;
 
 private:
     Triangle triangle(std::uint32_t t) const {

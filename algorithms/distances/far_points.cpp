@@ -21,7 +21,8 @@ std::array<Triangle, 4> quarters(const Triangle& whole) {
 }
 
 // From its middle no point of a triangle is farther than its farthest corner: what is nearer there
-// by that much is near as a whole. Other triangles are looked at by quarters.
+// by that much is near as a whole. So is a triangle all of whose corners are near to one triangle,
+// the distance from which is convex. Others are looked at by quarters.
 std::optional<Point> FarSearch::far_point(const Triangle& whole) {
     parts_.assign({whole});
     while (!parts_.empty()) {
@@ -32,6 +33,7 @@ std::optional<Point> FarSearch::far_point(const Triangle& whole) {
         for (const Point& x : t) reach = std::max(reach, norm(x - middle));
         if (reach <= distance_ && to_->is_within(middle, distance_ - reach, near_)) continue;
         if (reach < 1e-3 * distance_ || !is_near(middle)) return middle;
+        if (to_->holds(near_, t, distance_)) continue;
         const auto parts = quarters(t);
         parts_.insert(parts_.end(), parts.begin(), parts.end());
     }
