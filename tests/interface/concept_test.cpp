@@ -104,12 +104,14 @@ TEST(Identity, GivesTheSameSurfaceFromRequiredOperationsAlone) {
         const LatticeField field(grid, std::span<const float>(data.values));
         const IdentityGrid identity(grid);
         const IdentityField<LatticeBisection<3>, decltype(field)> same(identity, field);
+        const HierarchicalIndicator offsets(grid, field);
+        const HierarchicalIndicator same_offsets(identity, same);
         for (const double threshold : {0.0, 0.05}) {
             const IsosurfaceOptions options{.cap = true};
             const auto a =
-                isosurface(grid, field, data.isovalue, {.threshold = threshold}, options);
+                isosurface(grid, field, data.isovalue, under(offsets, threshold), options);
             const auto b =
-                isosurface(identity, same, data.isovalue, {.threshold = threshold}, options);
+                isosurface(identity, same, data.isovalue, under(same_offsets, threshold), options);
             EXPECT_EQ(a.surface.vertices, b.surface.vertices);
             EXPECT_EQ(a.surface.simplices, b.surface.simplices);
             EXPECT_EQ(a.surface.boundary, b.surface.boundary);

@@ -41,13 +41,21 @@ void expect_same(const A& a, const B& b) {
     EXPECT_EQ(a.error_bound, b.error_bound);
 }
 
+/// With a preroll, at any threshold, in the way of any hierarchy.
+template <int dimension, class Real>
+Isosurface<dimension> draw_by_offsets(const Hierarchy<Real>& hierarchy, double isovalue,
+                                      double threshold, const IsosurfaceOptions& options) {
+    const HierarchicalIndicator offsets(hierarchy);
+    return isosurface<dimension>(hierarchy, isovalue, under(offsets, threshold), options);
+}
+
 template <class Grid, class Field>
 void expect_same_behind_tables(const Grid& grid, const Field& field, double isovalue,
-                               const Projection& projection,
-                               const IsosurfaceOptions& options = {}) {
+                               double threshold, const IsosurfaceOptions& options = {}) {
     const BehindTables tables(grid, field);
-    expect_same(isosurface(grid, field, isovalue, projection, options),
-                isosurface<Grid::dimension>(*tables.hierarchy, isovalue, projection, options));
+    constexpr int dimension = Grid::dimension;
+    expect_same(draw_by_offsets<dimension>(erase(grid, field), isovalue, threshold, options),
+                draw_by_offsets<dimension>(*tables.hierarchy, isovalue, threshold, options));
     const nestgrid_field field_table = field_in_c(grid, field);
     std::array<char, 300> message{};
     const int verdict = nestgrid_check_grid(&tables.table.table, &field_table, message.data(), 300);
@@ -72,15 +80,15 @@ TEST(Tables, GiveTheSameSurfaceOnLattices) {
         const SampledField data = sampled_fields(n)[0];
         const LatticeField field(grid, std::span<const float>(data.values));
         for (const double threshold : {0.0, 0.05}) {
-            expect_same_behind_tables(grid, field, data.isovalue, {.threshold = threshold},
+            expect_same_behind_tables(grid, field, data.isovalue, threshold,
                                       {.normals = true, .cap = true});
         }
         const auto bytes = rounded<std::uint8_t>(data.values, 40);
         const LatticeField coarse(grid, std::span<const std::uint8_t>(bytes));
-        expect_same_behind_tables(grid, coarse, 15, {}, {.cap = true});
+        expect_same_behind_tables(grid, coarse, 15, 0, {.cap = true});
         const auto words = rounded<std::int32_t>(data.values, 1000);
         const LatticeField whole(grid, std::span<const std::int32_t>(words));
-        expect_same_behind_tables(grid, whole, 370, {.threshold = 50});
+        expect_same_behind_tables(grid, whole, 370, 50);
     }
 }
 
@@ -92,8 +100,7 @@ TEST(Tables, GiveTheSameLinesOnImages) {
     }
     const LatticeField field(image, std::span<const double>(values));
     for (const double threshold : {0.0, 0.1}) {
-        expect_same_behind_tables(image, field, 11.5, {.threshold = threshold},
-                                  {.normals = true, .cap = true});
+        expect_same_behind_tables(image, field, 11.5, threshold, {.normals = true, .cap = true});
     }
 }
 
@@ -104,11 +111,10 @@ TEST(Tables, GiveTheSameSurfaceFromTheRequiredOperations) {
     for (std::uint32_t e = 0; red.cells.size() < 4000; ++e) red.refine(e, red_tetrahedron_rule());
     const ForestField<3> field(red, distance);
     for (const double threshold : {0.0, 0.02}) {
-        expect_same_behind_tables(red, field, 0.3, {.threshold = threshold},
-                                  {.normals = true, .cap = true});
+        expect_same_behind_tables(red, field, 0.3, threshold, {.normals = true, .cap = true});
     }
     const ArchetypeGrid archetype;
-    expect_same_behind_tables(archetype, ArchetypeField{}, 3.0, {});
+    expect_same_behind_tables(archetype, ArchetypeField{}, 3.0, 0);
 }
 
 TEST(Tables, GiveTheSameLinesWithUnequalWeights) {
@@ -122,7 +128,7 @@ TEST(Tables, GiveTheSameLinesWithUnequalWeights) {
     forest.add_coarse(Shape::quadrilateral, {0, 1, 2, 3}, 1);
     for (std::uint32_t e = 0; forest.cells.size() < 200; ++e) forest.refine(e, layers);
     const ForestField<2> field(forest, [](const Point& x) { return norm(x); });
-    expect_same_behind_tables(forest, field, 0.7, {});
+    expect_same_behind_tables(forest, field, 0.7, 0);
 }
 
 TEST(Tables, GiveTheSameSurfaceWhereNodesHang) {
@@ -131,7 +137,7 @@ TEST(Tables, GiveTheSameSurfaceWhereNodesHang) {
     refine_randomly(forest, random, 400);
     const ForestField<3> field(forest, distance);
     EXPECT_GT(derive_hanging_nodes(forest).size(), 0U);
-    expect_same_behind_tables(forest, field, 0.3, {});
+    expect_same_behind_tables(forest, field, 0.3, 0);
 }
 
 TEST(Tables, GiveTheSameSurfaceWhereParentsAreGiven) {
@@ -144,7 +150,7 @@ TEST(Tables, GiveTheSameSurfaceWhereParentsAreGiven) {
         ++crossing;
         const ParentsByPlace grid(forest);
         const ForestField<3> field(forest, distance);
-        expect_same_behind_tables(grid, field, 0.8, {.threshold = 0.01});
+        expect_same_behind_tables(grid, field, 0.8, 0.01);
         TableInC failing(grid);
         failing.table.hanging_parents = [](const void*, std::uint64_t, std::uint64_t*) {
             return 7;
@@ -165,8 +171,7 @@ TEST(Tables, PassOnStateAndOptionalOperations) {
     const CurvedField field(grid, distance);
     EXPECT_FALSE(grid.hanging.empty());
     EXPECT_EQ(BehindTables(grid, field).hierarchy->epoch(), 5U);
-    expect_same_behind_tables(grid, field, 0.3, {.threshold = 0.01},
-                              {.normals = true, .cap = true});
+    expect_same_behind_tables(grid, field, 0.3, 0.01, {.normals = true, .cap = true});
     EXPECT_GT(State::uses, 0);
     EXPECT_EQ(State::live, 0);
     const BehindTables tables(grid, field);

@@ -51,6 +51,13 @@ nestgrid_element with_right_tag(nestgrid_element e) {
     return e;
 }
 
+/// With a preroll, at any threshold, in the way of any hierarchy.
+Isosurface<3> draw_by_offsets(const Hierarchy<float>& hierarchy, double isovalue, double threshold,
+                              const IsosurfaceOptions& options = {}) {
+    const HierarchicalIndicator offsets(hierarchy);
+    return isosurface<3>(hierarchy, isovalue, under(offsets, threshold), options);
+}
+
 class ToldBisections : public ::testing::Test {
 protected:
     explicit ToldBisections(int n = 17) : data{sampled_fields({n, n, n})} {
@@ -62,9 +69,8 @@ protected:
         grid = tetrahedra_in_c(&samples);
         field = samples_field_in_c(&samples);
     }
-    auto draw(double isovalue, const Projection& projection,
-              const IsosurfaceOptions& options = {}) const {
-        return isosurface<3>(*open_table<float>(grid, field), isovalue, projection, options);
+    auto draw(double isovalue, double threshold, const IsosurfaceOptions& options = {}) const {
+        return draw_by_offsets(*open_table<float>(grid, field), isovalue, threshold, options);
     }
     std::string violation() const {
         std::array<char, 300> message{};
@@ -138,12 +144,13 @@ TEST_F(ToldBisections, GiveTheSurfaceOfThePlainTraversal) {
         const LatticeField lattice_field(lattice, std::span<const float>(values.values));
         for (const double threshold : {0.0, 0.01, 0.05, 0.3}) {
             SCOPED_TRACE(values.name + " at " + std::to_string(threshold));
-            const Projection projection{.threshold = threshold * values.range};
-            const auto told = draw(values.isovalue, projection);
+            const double epsilon = threshold * values.range;
+            const auto told = draw(values.isovalue, epsilon);
             EXPECT_GT(told.surface.simplices.size(), 0U);
             grid.middles = nullptr;
-            expect_same(told, draw(values.isovalue, projection));
-            expect_same(told, isosurface(lattice, lattice_field, values.isovalue, projection));
+            expect_same(told, draw(values.isovalue, epsilon));
+            expect_same(told,
+                        draw_by_offsets(erase(lattice, lattice_field), values.isovalue, epsilon));
             show(values);
         }
     }
@@ -160,11 +167,11 @@ TEST_F(ToldBisections, GiveTheNormalsOfTheLattice) {
                                                      // Not drawn in patches.
                                                      {.normals = true, .at_nodes = true}}) {
                 SCOPED_TRACE(values.name + " at " + std::to_string(threshold));
-                const Projection projection{.threshold = threshold * values.range};
-                const auto told = draw(values.isovalue, projection, options);
+                const double epsilon = threshold * values.range;
+                const auto told = draw(values.isovalue, epsilon, options);
                 EXPECT_EQ(told.surface.normals.size(), told.surface.vertices.size());
-                expect_same(
-                    told, isosurface(lattice, lattice_field, values.isovalue, projection, options));
+                expect_same(told, draw_by_offsets(erase(lattice, lattice_field), values.isovalue,
+                                                  epsilon, options));
                 // Gradients at corners give the same by the plain traversal, but for finest pieces,
                 // whose ends are no corners.
                 field.node_gradients = nullptr;
@@ -173,7 +180,7 @@ TEST_F(ToldBisections, GiveTheNormalsOfTheLattice) {
                     return right_field.node_gradients(self, count, e->word, out);
                 };
                 if (options.cuts == Cuts::linear)
-                    expect_same(told, draw(values.isovalue, projection, options));
+                    expect_same(told, draw(values.isovalue, epsilon, options));
                 show(values);
             }
         }
@@ -305,15 +312,14 @@ TEST_F(ToldBisections, ThatAreWrongAreFound) {
 TEST_F(ToldBisections, ThatFailAreNamed) {
     const auto refused_with = [&](auto change) {
         change();
-        std::string sentence =
-            refusal<GridError>([&] { draw(data[0].isovalue, {.threshold = 0.01}); });
+        std::string sentence = refusal<GridError>([&] { draw(data[0].isovalue, 0.01); });
         show(data[0]);
         return sentence;
     };
     EXPECT_EQ(refused_with([&] { field.node_values = [](auto...) { return 7; }; }),
               "the operation 'node_values' of the field failed with code 7");
     field.node_gradients = [](auto...) { return 9; };
-    EXPECT_EQ(refusal<GridError>([&] { draw(data[0].isovalue, {}, {.normals = true}); }),
+    EXPECT_EQ(refusal<GridError>([&] { draw(data[0].isovalue, 0, {.normals = true}); }),
               "the operation 'node_gradients' of the field failed with code 9");
     show(data[0]);
     EXPECT_EQ(refused_with([&] { grid.middles = [](auto...) { return 3; }; }),
