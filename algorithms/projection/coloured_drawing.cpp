@@ -33,17 +33,19 @@ void collapse_colours_of(Projected<Result>& drawn, const Hierarchy<Real>& hierar
 
 /// Draws within the threshold that the projection gives, or the least one with its number of
 /// triangles.
-/// \param within within(threshold, drawn) draws, and collapses where the projection says so; it
-///        sets `drawn` to the triangles that there were before
+/// \param within within(threshold, drawn, work) draws, and collapses where the projection says so;
+///        it sets `drawn` to the triangles that there were before
 /// \param find finds the threshold where nothing is collapsed
 template <class Within, class Find>
-auto draw_within(const Criteria& criteria, const Within& within, const Find& find) {
+auto draw_within(const Criteria& criteria, const Work& work, const Within& within,
+                 const Find& find) {
     const Projection& projection = criteria.projection();
-    const TriangleBudget search = engine::threshold_of(projection, [&] {
+    const Work silent{.executor = work.executor};
+    const TriangleBudget search = engine::threshold_of(projection, work, [&] {
         if (!projection.collapse) return find();
         const TryCollapse attempt = [&](double error) -> std::optional<CollapseTrial> {
             CollapseTrial trial;
-            const auto drawn = within(error, trial.drawn);
+            const auto drawn = within(error, trial.drawn, silent);
             if (drawn.cancelled) return std::nullopt;
             trial.left = drawn.surface.simplices.size();
             return trial;
@@ -52,7 +54,7 @@ auto draw_within(const Criteria& criteria, const Within& within, const Find& fin
         return find_collapse_error(attempt, range, projection.max_triangles);
     });
     std::uint64_t begun = 0;
-    auto drawn = within(search.threshold, begun);
+    auto drawn = within(search.threshold, begun, work);
     drawn.search = search;
     return drawn;
 }
@@ -60,10 +62,12 @@ auto draw_within(const Criteria& criteria, const Within& within, const Find& fin
 template <class Real>
 Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
                             const Criteria& criteria, const IsosurfaceOptions& options,
-                            const Executor& executor) {
+                            const Work& work) {
+    const Executor& executor = work.executor;
     const Projection& projection = criteria.projection();
     const Bounds& bounds = criteria.bounds();
-    const auto within = [&](double error, std::uint64_t& begun) {
+    const auto within = [&](double error, std::uint64_t& begun, const Work& here) {
+        here.begin("drawing");
         const bool collapses = projection.collapse && error > 0;
         const double first = collapses ? colour_start * error : error;
         // Only a slice of all data is as near to its function as the grid allows.
@@ -78,6 +82,7 @@ Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunctio
             refine_colours(drawn.surface, hierarchy, tolerance, under(criterion, bounds));
         }
         if (!collapses) return drawn;
+        here.begin("collapsing");
         ColourCollapseOptions kept{.errors = {error}};
         Surface<3> whole;
         if (moves) {
@@ -87,7 +92,7 @@ Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunctio
         collapse_colours_of(drawn, hierarchy, bounds, kept, drawn.surface_error, executor);
         return drawn;
     };
-    return draw_within(criteria, within, [&] {
+    return draw_within(criteria, work, within, [&] {
         return find_threshold(hierarchy, function, engine::criteria_at(criteria), bounds,
                               projection.max_triangles, options, executor);
     });
@@ -97,10 +102,12 @@ Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunctio
 template <class Real>
 Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<double> scale,
                                 const Criteria& criteria, const ShadingOptions& options,
-                                const Executor& executor) {
+                                const Work& work) {
+    const Executor& executor = work.executor;
     const Projection& projection = criteria.projection();
     const Bounds& bounds = criteria.bounds();
-    const auto within = [&](double error, std::uint64_t& begun) {
+    const auto within = [&](double error, std::uint64_t& begun, const Work& here) {
+        here.begin("drawing");
         const bool collapses = projection.collapse && error > 0;
         const double first = collapses ? colour_start * error : error;
         ShadingOptions flat = options;
@@ -114,13 +121,14 @@ Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<
             refine_colours(drawn.surface, hierarchy, projection.colour_tolerance, under(s, bounds));
         }
         if (!collapses) return drawn;
+        here.begin("collapsing");
         double no_surface_error = 0;
         collapse_colours_of(drawn, hierarchy, bounds,
                             {.errors = {error}, .scale = scale.value_or(0)}, no_surface_error,
                             executor);
         return drawn;
     };
-    return draw_within(criteria, within, [&] {
+    return draw_within(criteria, work, within, [&] {
         return find_shading_threshold(hierarchy, engine::criteria_at(criteria), bounds,
                                       projection.max_triangles, options, executor);
     });
@@ -143,7 +151,7 @@ Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
     }
     return engine::with_field(prerolls, work, 2, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, engine::told(projection), {}, work);
-        return draw_shading(hierarchy, scale, criteria, options, work.executor);
+        return draw_shading(hierarchy, scale, criteria, options, work);
     });
 }
 
@@ -165,6 +173,7 @@ Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
     }
     return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
         if (projection.draws_everything()) {
+            work.begin("drawing");
             Projected<Slice> drawn{engine::slice(hierarchy, function, options, work.executor)};
             if (projection.colour_tolerance > 0 && !drawn.cancelled) {
                 refine_colours(drawn.surface, hierarchy, projection.colour_tolerance);
@@ -172,7 +181,7 @@ Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
             return drawn;
         }
         const Criteria criteria(prerolls, engine::told(projection), {}, work);
-        return draw_slice(hierarchy, function, criteria, options, work.executor);
+        return draw_slice(hierarchy, function, criteria, options, work);
     });
 }
 

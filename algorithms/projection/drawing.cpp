@@ -21,20 +21,20 @@ template <class Real>
 class KeptIsosurface {
 public:
     KeptIsosurface(const Hierarchy<Real>& hierarchy, double isovalue, const Criteria& criteria,
-                   const IsosurfaceOptions& options, const Executor& executor)
+                   const IsosurfaceOptions& options, const Work& work)
         : hierarchy_{hierarchy},
           isovalue_{isovalue},
           criteria_{criteria},
           options_{options},
-          executor_{executor} {}
+          work_{work} {}
 
     /// The threshold that the projection gives, or the one with its number of triangles.
     TriangleBudget find() {
         const Projection& projection = criteria_.projection();
-        return engine::threshold_of(projection, [&] {
+        return engine::threshold_of(projection, work_, [&] {
             const auto search = [&](const auto& function) {
                 return function(engine::criteria_at(criteria_), bounds(), projection.max_triangles,
-                                options_, executor_);
+                                options_, work_.executor);
             };
             if (!projection.collapse) {
                 return search([&](const auto&... how) {
@@ -53,6 +53,7 @@ public:
     }
     /// \param kept the error, or the distance
     Projected<Isosurface<3>> draw(double kept) {
+        work_.begin("drawing");
         const Projection& projection = criteria_.projection();
         const bool collapses = projection.collapse && kept > 0;
         const double part = projection.keeps_distance ? 0.5 : collapse_start;
@@ -70,7 +71,7 @@ public:
         }
         const Surface<3>& all = whole().surface;
         IsosurfaceWithin within = isosurface_within(hierarchy_, isovalue_, {all, first}, criterion,
-                                                    bounds(), options_, executor_);
+                                                    bounds(), options_, work_.executor);
         as_isosurface(drawn) = std::move(within.isosurface);
         drawn.far_points = within.points;
         if (collapses && !drawn.cancelled) {
@@ -96,10 +97,12 @@ private:
     }
     Isosurface<3> by(const Criterion& criterion, const IsosurfaceOptions& options) const {
         return engine::isosurface<3>(hierarchy_, isovalue_, criterion, bounds(), options,
-                                     executor_);
+                                     work_.executor);
     }
     void collapse_into(Projected<Isosurface<3>>& drawn, const CollapseOptions& kept) const {
-        drawn.collapsed = collapse(drawn.surface, hierarchy_, isovalue_, bounds(), kept, executor_);
+        work_.begin("collapsing");
+        drawn.collapsed =
+            collapse(drawn.surface, hierarchy_, isovalue_, bounds(), kept, work_.executor);
         drawn.collapsed->hand_to(drawn, drawn.surface_error);
     }
 
@@ -107,7 +110,7 @@ private:
     double isovalue_;
     const Criteria& criteria_;
     const IsosurfaceOptions& options_;
-    const Executor& executor_;
+    const Work& work_;
     std::optional<Isosurface<3>> whole_;
 };
 
@@ -166,16 +169,17 @@ Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double iso
         const Criteria criteria(prerolls, engine::told(projection), std::span(&isovalue, 1), work);
         Projected<Isosurface<dimension>> drawn;
         if constexpr (dimension == 3) {
-            KeptIsosurface surface(hierarchy, isovalue, criteria, options, executor);
+            KeptIsosurface surface(hierarchy, isovalue, criteria, options, work);
             const TriangleBudget search = surface.find();
             drawn = surface.draw(search.threshold);
             drawn.search = search;
         } else {
-            drawn.search = engine::threshold_of(projection, [&] {
+            drawn.search = engine::threshold_of(projection, work, [&] {
                 return find_threshold<2>(hierarchy, isovalue, engine::criteria_at(criteria),
                                          criteria.bounds(), projection.max_triangles, options,
                                          executor);
             });
+            work.begin("drawing");
             static_cast<Isosurface<2>&>(drawn) =
                 engine::isosurface<2>(hierarchy, isovalue, criteria.at(drawn.search.threshold),
                                       criteria.bounds(), options, executor);

@@ -72,6 +72,7 @@ std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
                                               int dimension, const Draw& draw) {
     return from_polynomials(prerolls, projection, work, [&](const VirtualRefinement& fine) {
         prerolls.field().facts().require_dimension(dimension);
+        work.begin("drawing");
         return Projected<Result>{draw(fine), {.threshold = projection.least_threshold()}};
     });
 }
@@ -84,6 +85,7 @@ auto draw_once(const Prerolls& prerolls, const Projection& projection,
                const Draw& draw) {
     const auto within = [&](const VirtualRefinement& fine) {
         prerolls.field().facts().require_dimension(dimension);
+        work.begin("drawing");
         return draw(fine, fine.criterion(), fine.bounds());
     };
     if (auto drawn = from_polynomials(prerolls, projection, work, within)) {
@@ -91,6 +93,7 @@ auto draw_once(const Prerolls& prerolls, const Projection& projection,
     }
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
         const Criteria criteria(prerolls, told(projection), isovalues, work);
+        work.begin("drawing");
         return draw(hierarchy, criteria.criterion(), criteria.bounds());
     });
 }
@@ -101,9 +104,10 @@ inline auto criteria_at(const Criteria& criteria) {
 
 /// The threshold that the projection gives, or the one that find() finds for its number.
 template <class Find>
-TriangleBudget threshold_of(const Projection& projection, const Find& find) {
-    if (projection.max_triangles > 0) return find();
-    return {.threshold = projection.least_threshold()};
+TriangleBudget threshold_of(const Projection& projection, const Work& work, const Find& find) {
+    if (projection.max_triangles == 0) return {.threshold = projection.least_threshold()};
+    work.begin("searching the threshold");
+    return find();
 }
 
 }  // namespace nestgrid::engine

@@ -7,6 +7,8 @@
 
 #include "drawing/meter.hpp"
 
+const nestgrid::Projection& Moment::projection() const { return all_.projection_; }
+
 const nestgrid::Criteria& Moment::criteria() const {
     if (!criteria_) {
         all_.range();

@@ -24,6 +24,9 @@ public:
     decltype(auto) visit(Function&& function) const {
         return prerolls_->field().visit(function);
     }
+    const nestgrid::Prerolls& prerolls() const { return *prerolls_; }
+    /// What is asked for at all moments; surfaces add their thresholds.
+    const nestgrid::Projection& projection() const;
     /// Where it is between frames; nothing for a field without frames.
     std::optional<double> time() const { return time_; }
     /// Made when first asked for. The prerolls of frames are made once for all moments.

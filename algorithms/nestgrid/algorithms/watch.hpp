@@ -58,7 +58,13 @@ struct Work {
     /// Asked in the place of a field that is the same: for hierarchies that are made anew for each
     /// call. Or null.
     const FieldOnGrid* same_field = nullptr;
+    /// Told what begins, by drawings under a projection: "drawing", "searching the threshold",
+    /// "collapsing". May be empty.
+    std::function<void(const char* step)> step{};
 
+    void begin(const char* what) const {
+        if (step) step(what);
+    }
     /// The field as this work asks it.
     FieldOnGrid on(const FieldOnGrid& field) const {
         const FieldOnGrid& asked = same_field == nullptr ? field : *same_field;
