@@ -35,6 +35,14 @@ public:
         view_ = &view;
         walk_->corners(view, keys ? key_.data() : nullptr, x_.data());
     }
+    /// Loads an element that was put aside.
+    /// \param keys of the corners, or null; and so are their positions
+    void reload(const View& view, const NodeKey* keys, const Point* positions) {
+        view_ = &view;
+        if (keys == nullptr) return;
+        std::copy(keys, keys + view.corner_count(), key_.begin());
+        std::copy(positions, positions + view.corner_count(), x_.begin());
+    }
     /// Chooses whether edges are cut on their finest pieces (finest_piece.hpp).
     void set_finest(bool finest) { cuts_finest_ = finest; }
     /// Sets the level that cuts the loaded element.
