@@ -41,7 +41,9 @@ public:
     static std::size_t simplices_of(const Contour& plain);
     /// Draws a plain contour as draw() would, in the same order and to the last bit, but for
     /// attributes and references, which it leaves out.
-    void draw_plainly(LevelSurface<dimension>& surface, const Contour& contour, unsigned inside);
+    /// \param by_edge takes the vertices where these have names, or is null
+    void draw_plainly(LevelSurface<dimension>& surface, const Contour& contour, unsigned inside,
+                      Vertices* by_edge = nullptr);
     /// Finds the vertices of a plain contour as draw_plainly() does, which requires that vertices
     /// have names.
     /// \return them by edge

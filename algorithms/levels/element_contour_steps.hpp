@@ -21,7 +21,8 @@ NESTGRID_INLINE std::size_t ElementContour<dimension, Real>::simplices_of(const 
 template <int dimension, class Real>
 NESTGRID_INLINE void ElementContour<dimension, Real>::draw_plainly(LevelSurface<dimension>& surface,
                                                                    const Contour& contour,
-                                                                   unsigned inside) {
+                                                                   unsigned inside,
+                                                                   Vertices* by_edge) {
     const ElementView<Real>& view = cuts_->view();
     surface_ = &surface;
     surface.builder().add_element(view.element(), view.shape, view.level);
@@ -38,6 +39,8 @@ NESTGRID_INLINE void ElementContour<dimension, Real>::draw_plainly(LevelSurface<
         const Vertices v = names ? find_vertices(loop, inside) : make_vertices(loop, inside);
         put_loop(loop, v, view.orientation < 0);
         if (boundary != 0) put_boundary(loop, v, boundary);
+        if (by_edge == nullptr) continue;
+        for (std::size_t i = 0; i < loop.count; ++i) (*by_edge)[loop.edge[i]] = v[i];
     }
 }
 

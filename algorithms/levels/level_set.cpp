@@ -383,8 +383,10 @@ NESTGRID_INLINE void LevelSet<dimension, Real>::extract(std::size_t level, const
                                                         bool draws) {
     load(view, draws);
     at_hand_.cuts.set_level(search_->levels()[level]);
-    if (records_) return draw_beside_finer(level, inside, boundary, draws);
-    draw(level, inside, boundary);
+    if (!records_ || (draws && view.level == finest_level_ && !view.closed.any)) {
+        return draw(level, inside, boundary);
+    }
+    draw_beside_finer(level, inside, boundary, draws);
 }
 
 /// Loads the corners of the element, and adds its gradients where it is drawn.
@@ -453,21 +455,20 @@ void LevelSet<dimension, Real>::draw_beside_finer(std::size_t level, unsigned in
     auto& aside = at_hand_.aside;
     const bool by_names = transitions.record.by_names();
     const Contour* const plain = plain_contour(view.shape, inside);
+    const bool at_once = view.level == finest_level_;
     typename ElementContour<dimension, Real>::Vertices vertices;
+    if (at_once && draws && plain != nullptr && !by_names) {
+        at_hand_.contour.draw_plainly(surface, *plain, inside, &vertices);
+        aside.record(transitions.record, inside, boundary, vertices);
+        return end_element(surface);
+    }
     if (!by_names) vertices = aside.find_vertices(surface, plain, inside);
     if (view.closed.any) aside.record(transitions.record, inside, boundary, vertices);
     if (!draws) return;
-    if (view.level != finest_level_) {
-        const unsigned on_boundary = boundary_of(surface, view);
-        aside.put_aside(surface, transitions, inside, boundary, on_boundary, vertices);
-        if (view.member->hidden != Hidden::wholly) end_element(surface);
-        return;
-    }
-    if (plain == nullptr || by_names) return draw(level, inside, boundary);
-    surface.builder().add_element(view.element(), view.shape, view.level);
-    at_hand_.contour.draw_between(surface, *plain, vertices, view.orientation < 0,
-                                  boundary_of(surface, view));
-    end_element(surface);
+    if (at_once) return draw(level, inside, boundary);
+    const unsigned on_boundary = boundary_of(surface, view);
+    aside.put_aside(surface, transitions, inside, boundary, on_boundary, vertices);
+    if (view.member->hidden != Hidden::wholly) end_element(surface);
 }
 
 /// Finds where caps are drawn beside hidden elements.
