@@ -4,6 +4,8 @@
 // The element at hand: its corners, and where a level cuts its edges.
 #pragma once
 
+#include <algorithm>
+
 #include <contours/cell_contour.hpp>
 #include <contours/level.hpp>
 #include <levels/finest_piece.hpp>
