@@ -6,13 +6,14 @@
 
 namespace nestgrid::engine {
 
-void TransitionContours::append(const TransitionContours& other) {
+void TransitionContours::append(const TransitionContours& other, std::span<const Index> numbers) {
     std::vector<KeyPair> names(other.cuts_.size());
     other.vertex_of_.for_each([&](const KeyPair& name, Index v) { names[v] = name; });
-    std::vector<Index> number(names.size());
+    std::vector<Index> named(names.size());
     for (std::size_t v = 0; v < names.size(); ++v) {
-        number[v] = vertex(names[v], [&] { return other.cut(static_cast<Index>(v)); });
+        named[v] = vertex(names[v], [&] { return other.cut(static_cast<Index>(v)); });
     }
+    const std::span<const Index> number = by_names_ ? std::span<const Index>(named) : numbers;
     for (const Segment& s : other.segments_) {
         segments_.push_back({s.face, number[s.from], number[s.to]});
     }
@@ -25,9 +26,10 @@ void TransitionContours::append(const TransitionContours& other) {
         [&](NodeKey part, const Corners& c) { shared_parts_.insert(part, c); });
 }
 
-void TransitionContours::finish() {
+void TransitionContours::finish(const std::function<Point(Index)>& position) {
     group_segments();
-    conflicts_.for_each([&](NodeKey face, const Owner& owner) { find_gaps(face, owner); });
+    conflicts_.for_each(
+        [&](NodeKey face, const Owner& owner) { find_gaps(face, owner, position); });
     std::sort(gaps_.begin(), gaps_.end(),
               [](const Gap& a, const Gap& b) { return a.loop < b.loop; });
     conflicts_ = {};
@@ -56,7 +58,9 @@ void TransitionContours::group_segments() {
     }
 }
 
-void TransitionContours::find_gaps(NodeKey face, const Owner& owner) {
+void TransitionContours::find_gaps(NodeKey face, const Owner& owner,
+                                   const std::function<Point(Index)>& position) {
+    const auto place = [&](Index v) { return by_names_ ? cuts_[v].x : position(v); };
     std::vector<Segment> left;
     const Index number = *face_number_.find(face);
     sort_segments(number);
@@ -68,8 +72,8 @@ void TransitionContours::find_gaps(NodeKey face, const Owner& owner) {
     }
     // Loops begin, and go on, by the places of vertices: their numbers depend on who draws.
     std::sort(left.begin(), left.end(), [&](const Segment& a, const Segment& b) {
-        if (a.from != b.from) return cuts_[a.from].x > cuts_[b.from].x;
-        return cuts_[a.to].x > cuts_[b.to].x;
+        if (a.from != b.from) return place(a.from) > place(b.from);
+        return place(a.to) > place(b.to);
     });
     while (!left.empty()) {
         Gap gap{{}, owner};

@@ -4,15 +4,19 @@
 // The segments that elements draw on closed faces (walk/closed_parts.hpp): the finer side records
 // them, the coarser side adopts them.
 //
-// Invariant: a segment is stored under the key of every closed face that contains it. An element
-// that has a closed face among its own faces does not divide it, so that all segments under the key
-// of that face come from its other side.
+// Invariants:
+//   - a segment is stored under the key of every closed face that contains it. An element that has
+//     a closed face among its own faces does not divide it, so that all segments under the key of
+//     that face come from its other side;
+//   - a vertex is known by its number in the surface; or, where the surface has no numbers or may
+//     not have the vertex, by its name and a number of the record, which keeps its cut.
 // Memory: of the order of the surface on closed faces.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -43,6 +47,11 @@ public:
         attribute_count_ = attribute_count;
         owners_ = std::move(elements);
     }
+
+    /// Chooses how vertices are known: by their names, which vertex() takes and find() finds, or
+    /// else by their numbers in the surface. To be called before the first record().
+    void know_by_names(bool by_names) { by_names_ = by_names; }
+    bool by_names() const { return by_names_; }
 
     /// To be called before the first record() where ranks share nodes; null where they do not.
     void share(const SharedNodes* shared) { shared_ = shared; }
@@ -75,7 +84,8 @@ public:
         if (shared_ != nullptr) note_shared(edge, ends);
     }
 
-    /// The number of the vertex with a name; make() returns its SurfaceCut where it is new.
+    /// The number of the vertex with a name. Requires by_names(). make() returns its SurfaceCut
+    /// where it is new.
     template <class Make>
     Index vertex(const KeyPair& name, Make&& make) {
         const auto [at, is_new] = vertex_of_.insert(name, static_cast<Index>(cuts_.size()));
@@ -88,16 +98,20 @@ public:
     void expect(const KeyPair& name) const { vertex_of_.prefetch(name); }
 
     /// Adds the record of another task, as if this task had visited that task's elements.
-    void append(const TransitionContours& other);
+    /// \param numbers where vertices are known by these: those that the vertices of the other
+    /// task's
+    ///        surface have in this one's
+    void append(const TransitionContours& other, std::span<const Index> numbers);
 
     /// Must be called once, after the last record() and before the first lookup.
-    void finish();
+    /// \param position tells where a vertex with a number of the surface is
+    void finish(const std::function<Point(Index)>& position);
 
     const std::vector<Gap>& gaps() const { return gaps_; }
 
     bool empty() const { return segments_.empty(); }
 
-    /// The recorded vertex with a name, or null.
+    /// The recorded vertex with a name, or null. Requires by_names(), like cut().
     const Index* find(const KeyPair& name) const { return vertex_of_.find(name); }
 
     /// The number of a face on which something was recorded, or null.
@@ -238,8 +252,9 @@ private:
 
     /// Links the segments on a face that only one side draws to loops. At each vertex as many of
     /// these segments begin as end.
-    void find_gaps(NodeKey face, const Owner& owner);
+    void find_gaps(NodeKey face, const Owner& owner, const std::function<Point(Index)>& position);
 
+    bool by_names_ = true;
     std::vector<Segment> segments_;
     std::vector<Gap> gaps_;
     KeyTable<NodeKey, Split> split_of_;

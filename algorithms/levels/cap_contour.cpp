@@ -57,7 +57,6 @@ auto CapContour<dimension, Real>::polygon_from(Shape shape, const FaceTopology& 
     return polygon;
 }
 
-/// The key of the maximal edge around an edge.
 template <int dimension, class Real>
 NodeKey CapContour<dimension, Real>::edge_key(std::uint8_t edge) const {
     FaceKey key;
@@ -90,7 +89,9 @@ void CapContour<dimension, Real>::record_side(const FaceTopology& face, const Po
         if (polygon.corner[end].cut) continue;
         const std::uint8_t corner = face.corner[polygon.corner[end].from];
         const NodeKey key = cuts_->keys()[corner];
-        const Number vertex = record.vertex({key, key}, [&] { return cuts_->node(corner); });
+        const Number vertex = record.by_names()
+                                  ? record.vertex({key, key}, [&] { return cuts_->node(corner); })
+                                  : contour_->of_surface(contour_->node_vertex(corner));
         const auto* const around = cuts_->view().closed.edge(edge);
         record.record_on_edge(edge_key(edge), {around->key(0), around->key(1)}, vertex);
     }
@@ -100,11 +101,12 @@ void CapContour<dimension, Real>::record_side(const FaceTopology& face, const Po
 /// the edge leaves the level, so that no node beyond the cut was recorded.
 template <int dimension, class Real>
 auto CapContour<dimension, Real>::chain(const FaceTopology& face, const Polygon& polygon,
-                                        std::size_t side, const TransitionContours* drawn_below)
+                                        std::size_t side, const Recorded& recorded)
     -> std::vector<Number> {
     const std::uint8_t edge = polygon.edge[side];
-    if (edge == no_edge || drawn_below == nullptr || drawn_below->empty()) return {};
-    const Number* const on_edge = drawn_below->find_face(edge_key(edge));
+    const TransitionContours* const record = recorded.by_caps;
+    if (edge == no_edge || record == nullptr || record->empty()) return {};
+    const Number* const on_edge = record->find_face(recorded.edge_key[edge]);
     if (on_edge == nullptr) return {};
     const Corner& from = polygon.corner[side];
     const Corner& to = polygon.corner[(side + 1) % polygon.count];
@@ -112,25 +114,24 @@ auto CapContour<dimension, Real>::chain(const FaceTopology& face, const Polygon&
     const Point begin = x[face.corner[from.from]];
     const Point along = x[face.corner[(from.from + 1U) % face.corners]] - begin;
     std::vector<std::pair<double, Number>> between;
-    drawn_below->for_each_from(*on_edge, [&](Number v) {
-        const double at = dot(drawn_below->cut(v).x - begin, along);
+    record->for_each_from(*on_edge, [&](Number v) {
+        const double at = dot(contour_->recorded_position(*record, v) - begin, along);
         if ((from.cut || at > 0) && (to.cut || at < dot(along, along))) between.emplace_back(at, v);
     });
     std::sort(between.begin(), between.end());
     between.erase(std::unique(between.begin(), between.end()), between.end());
     std::vector<Number> chain;
     for (const auto& [at, v] : between) {
-        chain.push_back(contour_->adopted(drawn_below->cut(v), face));
+        chain.push_back(contour_->adopted(*record, v, face));
     }
     return chain;
 }
 
 template <int dimension, class Real>
-void CapContour<dimension, Real>::draw(unsigned inside, unsigned faces,
-                                       const TransitionContours* drawn_below) {
+void CapContour<dimension, Real>::draw(unsigned inside, unsigned faces, const Recorded& recorded) {
     if (dimension == 2) return draw_segments(inside, faces);
     for_each_polygon(inside, faces, [&](const FaceTopology& face, const Polygon& polygon) {
-        draw_polygon(face, polygon, drawn_below);
+        draw_polygon(face, polygon, recorded);
     });
 }
 
@@ -156,7 +157,7 @@ void CapContour<dimension, Real>::draw_segments(unsigned inside, unsigned faces)
 
 template <int dimension, class Real>
 void CapContour<dimension, Real>::draw_polygon(const FaceTopology& face, const Polygon& polygon,
-                                               const TransitionContours* drawn_below) {
+                                               const Recorded& recorded) {
     const std::size_t n = polygon.count;
     std::array<Number, 8> v{};
     std::array<std::vector<Number>, 8> chains;
@@ -164,7 +165,7 @@ void CapContour<dimension, Real>::draw_polygon(const FaceTopology& face, const P
         const Corner& c = polygon.corner[i];
         v[i] = c.cut ? contour_->vertex(edge_at(cuts_->view().shape, face, c.from))
                      : contour_->node_vertex(face.corner[c.from]);
-        chains[i] = chain(face, polygon, i, drawn_below);
+        chains[i] = chain(face, polygon, i, recorded);
     }
     ContourFilling<ElementContour<dimension, Real>> filling(*contour_);
     for (std::size_t i = 2; i < n; ++i) {

@@ -25,10 +25,17 @@ public:
     /// Records the nodes of the element's caps on closed edges.
     /// \param inside the corners inside the level, one bit each
     /// \param faces the faces to be capped, one bit each
+    /// Where the record knows vertices by numbers, contour.begin() must have been called.
     void record(unsigned inside, unsigned faces, TransitionContours& record) const;
+    /// What all caps recorded, or null, and the key of the maximal edge around each edge.
+    struct Recorded {
+        const TransitionContours* by_caps = nullptr;
+        const NodeKey* edge_key = nullptr;
+    };
     /// Draws the element's caps; contour.begin() must have been called.
-    /// \param drawn_below what all caps recorded, or null
-    void draw(unsigned inside, unsigned faces, const TransitionContours* drawn_below);
+    void draw(unsigned inside, unsigned faces, const Recorded& recorded);
+    /// The key of the maximal edge around an edge of the element at hand.
+    NodeKey edge_key(std::uint8_t edge) const;
 
 private:
     using Number = std::uint32_t;
@@ -48,12 +55,10 @@ private:
                                 const FaceContour& contour, unsigned& left);
     void record_side(const FaceTopology& face, const Polygon& polygon, std::size_t side,
                      TransitionContours& record) const;
-    NodeKey edge_key(std::uint8_t edge) const;
     std::vector<Number> chain(const FaceTopology& face, const Polygon& polygon, std::size_t side,
-                              const TransitionContours* drawn_below);
+                              const Recorded& recorded);
     void draw_segments(unsigned inside, unsigned faces);
-    void draw_polygon(const FaceTopology& face, const Polygon& polygon,
-                      const TransitionContours* drawn_below);
+    void draw_polygon(const FaceTopology& face, const Polygon& polygon, const Recorded& recorded);
 
     const ElementCuts<Real>* cuts_;
     ElementContour<dimension, Real>* contour_;

@@ -27,7 +27,7 @@ void ElementContour<dimension, Real>::set_chain(std::uint8_t edge, std::vector<N
 }
 
 template <int dimension, class Real>
-void ElementContour<dimension, Real>::draw(unsigned inside, unsigned joins) {
+void ElementContour<dimension, Real>::draw(unsigned inside, unsigned joins, unsigned boundary) {
     const ElementView<Real>& view = cuts_->view();
     const Contour& contour = table(view.shape).at(inside, joins);
     if constexpr (dimension == 2) {
@@ -43,7 +43,6 @@ void ElementContour<dimension, Real>::draw(unsigned inside, unsigned joins) {
         }
         tunnel ? filling.fill(contour, *tunnel) : filling.fill(contour);
     }
-    const unsigned boundary = surface_->names_vertices() ? cuts_->walk().boundary(view) : 0;
     for (std::size_t l = 0; boundary != 0 && l < contour.loop_count; ++l) {
         Vertices v;
         for (std::size_t i = 0; i < contour.loop[l].count; ++i) {
@@ -51,6 +50,19 @@ void ElementContour<dimension, Real>::draw(unsigned inside, unsigned joins) {
         }
         put_boundary(contour.loop[l], v, boundary);
     }
+}
+
+template <int dimension, class Real>
+unsigned ElementContour<dimension, Real>::own_joins(unsigned alternating) const {
+    constexpr FaceTopology element{Shape::quadrilateral, 4, {0, 1, 3, 2}};  // in two dimensions
+    unsigned joins = 0;
+    for (unsigned left = alternating; left != 0; left &= left - 1) {
+        const auto f = static_cast<std::size_t>(std::countr_zero(left));
+        const bool joined =
+            cuts_->joined(dimension == 2 ? element : cuts_->view().topology().face[f]);
+        joins |= unsigned{joined} << f;
+    }
+    return joins;
 }
 
 template <int dimension, class Real>
@@ -76,28 +88,38 @@ void ElementContour<dimension, Real>::simplex(const Locals& corners) {
 /// element.
 template <int dimension, class Real>
 void ElementContour<dimension, Real>::fill_gap(LevelSurface<dimension>& surface,
-                                               std::span<const SurfaceCut> loop,
-                                               const Handle& owner, Shape shape, int level) {
+                                               const TransitionContours& record,
+                                               const TransitionContours::Gap& gap) {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     constexpr Point nowhere{unknown, unknown, unknown};
     begin(surface, false);
     begun_ = true;
-    surface_->builder().add_element(owner, shape, level);
+    surface_->builder().add_element(record.element(gap.owner), gap.owner.shape, gap.owner.level);
     Point x{0, 0, 0};
     std::vector<double> attributes(cuts_->attribute_count(), 0.0);
-    const double weight = 1.0 / static_cast<double>(loop.size());
-    for (const SurfaceCut& cut : loop) {
-        number_of(surface_->vertex_between({cut.node[0], cut.node[1]}, [&] { return cut; }),
-                  nowhere);
-        x = x + weight * cut.x;
-        for (std::size_t i = 0; i < attributes.size(); ++i) {
-            attributes[i] += weight * cut.attributes[i];
-        }
+    const double weight = 1.0 / static_cast<double>(gap.loop.size());
+    for (const Number recorded : gap.loop) {
+        const Number v = number_of(of_record(record, recorded), nowhere);
+        x = x + weight * recorded_position(record, recorded);
+        if (attributes.empty()) continue;
+        const std::span<const double> data = record.by_names()
+                                                 ? record.cut(recorded).attributes
+                                                 : surface_->builder().attributes(local_[v]);
+        for (std::size_t i = 0; i < attributes.size(); ++i) attributes[i] += weight * data[i];
     }
-    const auto n = static_cast<Number>(loop.size());
+    const auto n = static_cast<Number>(gap.loop.size());
     if (n == 3) return triangle(0, 1, 2);
     number_of(surface_->add_unnamed(std::span(&x, 1), attributes), nowhere);
     for (Number i = 0; i < n; ++i) triangle(i, (i + 1) % n, n);
+}
+
+/// The vertex of the surface that is a recorded one.
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::of_record(const TransitionContours& record, Number recorded)
+    -> Number {
+    if (!record.by_names()) return recorded;
+    const SurfaceCut cut = record.cut(recorded);
+    return surface_->vertex_between({cut.node[0], cut.node[1]}, [&] { return cut; });
 }
 
 template <int dimension, class Real>
@@ -110,22 +132,41 @@ auto ElementContour<dimension, Real>::number_of(Number vertex, const Point& refe
 template <int dimension, class Real>
 auto ElementContour<dimension, Real>::vertex(std::uint8_t edge) -> Number {
     if (on_edge_[edge] != none) return on_edge_[edge];
-    Point reference{};
-    if (wants_reference()) {
-        const Topology& t = cuts_->view().topology();
-        const auto& [a, b] = t.edge[edge];
-        const double ua = cuts_->u(a);
-        const double ub = cuts_->u(b);
-        double fraction = std::clamp(ua / (ua - ub), 0.0, 1.0);
-        if (cuts_->cuts_finest()) {
-            const double from_lower = cuts_->cut(edge).fraction;
-            fraction = ua < ub ? from_lower : 1 - from_lower;
-        }
-        reference = t.reference[a] + fraction * (t.reference[b] - t.reference[a]);
-    }
+    const Point reference = wants_reference() ? reference_on_edge(edge) : Point{};
     const Number v = surface_->vertex_between(cuts_->name(edge), [&] { return cuts_->cut(edge); });
     if (options_->at_nodes) put_at_node(v, cuts_->corner_at_level(edge));
     return on_edge_[edge] = number_of(v, reference);
+}
+
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::take_vertex(std::uint8_t edge, Number of_surface,
+                                                  bool corners) {
+    const bool wanted = wants_reference() && corners;
+    on_edge_[edge] = number_of(of_surface, wanted ? reference_on_edge(edge) : Point{});
+}
+
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::take_cut(std::uint8_t edge, const SurfaceCut& cut,
+                                               bool corners) {
+    const KeyPair name(cut.node[0], cut.node[1]);
+    const Number v = surface_->vertex_between(name, [&] { return cut; });
+    if (options_->at_nodes) put_at_node(v, cuts_->corner_at_level(edge));
+    take_vertex(edge, v, corners);
+}
+
+/// The reference coordinates of the cut of an edge.
+template <int dimension, class Real>
+Point ElementContour<dimension, Real>::reference_on_edge(std::uint8_t edge) const {
+    const Topology& t = cuts_->view().topology();
+    const auto& [a, b] = t.edge[edge];
+    const double ua = cuts_->u(a);
+    const double ub = cuts_->u(b);
+    double fraction = std::clamp(ua / (ua - ub), 0.0, 1.0);
+    if (cuts_->cuts_finest()) {
+        const double from_lower = cuts_->cut(edge).fraction;
+        fraction = ua < ub ? from_lower : 1 - from_lower;
+    }
+    return t.reference[a] + fraction * (t.reference[b] - t.reference[a]);
 }
 
 /// \param corner or no_corner, for a vertex that lies at none
@@ -146,11 +187,12 @@ auto ElementContour<dimension, Real>::node_vertex(std::size_t corner) -> Number 
 }
 
 template <int dimension, class Real>
-auto ElementContour<dimension, Real>::adopted(const SurfaceCut& cut, const FaceTopology& face)
-    -> Number {
-    const Point reference = options_->reference ? reference_on_face(cut.x, face) : Point{};
-    return number_of(surface_->vertex_between({cut.node[0], cut.node[1]}, [&] { return cut; }),
-                     reference);
+auto ElementContour<dimension, Real>::adopted(const TransitionContours& record, Number recorded,
+                                              const FaceTopology& face) -> Number {
+    const Point reference = options_->reference
+                                ? reference_on_face(recorded_position(record, recorded), face)
+                                : Point{};
+    return number_of(of_record(record, recorded), reference);
 }
 
 /// The reference coordinates of a point on a face, by Newton's method on the map from the unit

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <contours/contour_filling.hpp>
+#include <contours/transition_contours.hpp>
 #include <levels/element_cuts.hpp>
 #include <nestgrid/algorithms/isosurface_options.hpp>
 #include <surfaces/level_surface.hpp>
@@ -20,6 +21,8 @@ class ElementContour {
 public:
     using Number = std::uint32_t;
     using Locals = std::array<Number, static_cast<std::size_t>(dimension)>;
+    /// Vertices of the surface, by edge or by place in a loop.
+    using Vertices = std::array<Number, max_edges>;
 
     /// All arguments are borrowed.
     ElementContour(ElementCuts<Real>& cuts, SimplexTally& tally, const IsosurfaceOptions& options)
@@ -38,7 +41,19 @@ public:
     static std::size_t simplices_of(const Contour& plain);
     /// Draws a plain contour as draw() would, in the same order and to the last bit, but for
     /// attributes and references, which it leaves out.
-    void draw_plainly(LevelSurface<dimension>& surface, const Contour& contour, unsigned inside);
+    /// \param by_edge takes the vertices where these have names, or is null
+    void draw_plainly(LevelSurface<dimension>& surface, const Contour& contour, unsigned inside,
+                      Vertices* by_edge = nullptr);
+    /// Finds the vertices of a plain contour as draw_plainly() does, which requires that vertices
+    /// have names.
+    /// \return them by edge
+    Vertices plain_vertices(LevelSurface<dimension>& surface, const Contour& contour,
+                            unsigned inside);
+    /// Draws a plain contour between vertices that are known.
+    /// \param v by edge
+    /// \param boundary the element's faces on the boundary of the domain, one bit each
+    void draw_between(LevelSurface<dimension>& surface, const Contour& contour, const Vertices& v,
+                      bool mirrored, unsigned boundary);
 
     /// Begins the element at hand.
     void begin(LevelSurface<dimension>& surface) { begin(surface, cuts_->view().orientation < 0); }
@@ -52,19 +67,33 @@ public:
     void set_chain(std::uint8_t edge, std::vector<Number>& chain);
     /// Draws the contour of an element.
     /// \param joins faces whose inside corners are joined where signs alternate, one bit each
-    void draw(unsigned inside, unsigned joins);
+    /// \param boundary faces on the boundary of the domain, one bit each
+    void draw(unsigned inside, unsigned joins, unsigned boundary);
+    /// Those of some faces whose signs alternate that join their corners inside the level, by the
+    /// values at these.
+    unsigned own_joins(unsigned alternating) const;
     /// A simplex between local vertices, oriented as in an element that is not mirrored.
     void simplex(const Locals& corners);
     /// Fills a gap between elements by a fan around its middle.
-    /// \param owner the element that the simplices are said to come from
-    void fill_gap(LevelSurface<dimension>& surface, std::span<const SurfaceCut> loop,
-                  const Handle& owner, Shape shape, int level);
+    void fill_gap(LevelSurface<dimension>& surface, const TransitionContours& record,
+                  const TransitionContours::Gap& gap);
 
     // Local vertices, each new where the element does not have it yet (ContourFilling).
     Number vertex(std::uint8_t edge);
     Number node_vertex(std::size_t corner);
     /// A vertex that a finer side recorded on a face.
-    Number adopted(const SurfaceCut& cut, const FaceTopology& face);
+    Number adopted(const TransitionContours& record, Number recorded, const FaceTopology& face);
+    /// The position of a recorded vertex.
+    Point recorded_position(const TransitionContours& record, Number recorded) const {
+        return record.by_names() ? record.cut(recorded).x : surface_->position(recorded);
+    }
+    /// Takes a vertex on an edge that was found before, or its cut, where the element was put aside
+    /// and is loaded again.
+    /// \param corners whether keys, positions and values at the corners are loaded
+    void take_vertex(std::uint8_t edge, Number of_surface, bool corners);
+    void take_cut(std::uint8_t edge, const SurfaceCut& cut, bool corners);
+    /// The vertex of the surface that a local vertex is.
+    Number of_surface(Number local) const { return local_[local]; }
     Number middle(std::span<const Number> of);
     Number inside(const Point& reference);
     Point position(Number local) const { return surface_->position(local_[local]); }
@@ -78,7 +107,6 @@ public:
     }
 
 private:
-    using Vertices = std::array<Number, max_edges>;
     static constexpr Number none = LevelSurface<dimension>::none;
 
     void begin(LevelSurface<dimension>& surface, bool mirrored);
@@ -89,11 +117,13 @@ private:
     template <class Position, class Put>
     void divide_loop(const ContourLoop& loop, bool mirrored, const Position& x, const Put& put);
     void put_boundary(const ContourLoop& loop, const Vertices& v, unsigned boundary);
+    Point reference_on_edge(std::uint8_t edge) const;
     Point reference_on_face(const Point& x, const FaceTopology& face) const;
     /// Tells the surface that a vertex lies at a corner.
     void put_at_node(Number vertex, std::size_t corner);
     /// Whether vertices need their reference coordinates.
     bool wants_reference() const { return options_->reference || cuts_->attribute_count() > 0; }
+    Number of_record(const TransitionContours& record, Number recorded);
     Number number_of(Number vertex, const Point& reference);
 
     ElementCuts<Real>* cuts_;

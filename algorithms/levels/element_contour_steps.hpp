@@ -21,7 +21,8 @@ NESTGRID_INLINE std::size_t ElementContour<dimension, Real>::simplices_of(const 
 template <int dimension, class Real>
 NESTGRID_INLINE void ElementContour<dimension, Real>::draw_plainly(LevelSurface<dimension>& surface,
                                                                    const Contour& contour,
-                                                                   unsigned inside) {
+                                                                   unsigned inside,
+                                                                   Vertices* by_edge) {
     const ElementView<Real>& view = cuts_->view();
     surface_ = &surface;
     surface.builder().add_element(view.element(), view.shape, view.level);
@@ -38,6 +39,8 @@ NESTGRID_INLINE void ElementContour<dimension, Real>::draw_plainly(LevelSurface<
         const Vertices v = names ? find_vertices(loop, inside) : make_vertices(loop, inside);
         put_loop(loop, v, view.orientation < 0);
         if (boundary != 0) put_boundary(loop, v, boundary);
+        if (by_edge == nullptr) continue;
+        for (std::size_t i = 0; i < loop.count; ++i) (*by_edge)[loop.edge[i]] = v[i];
     }
 }
 
@@ -59,6 +62,35 @@ auto ElementContour<dimension, Real>::find_vertices(const ContourLoop& loop, uns
         });
     }
     return v;
+}
+
+template <int dimension, class Real>
+auto ElementContour<dimension, Real>::plain_vertices(LevelSurface<dimension>& surface,
+                                                     const Contour& contour, unsigned inside)
+    -> Vertices {
+    surface_ = &surface;
+    Vertices on_edge;
+    for (std::size_t l = 0; l < contour.loop_count; ++l) {
+        const ContourLoop& loop = contour.loop[l];
+        const Vertices v = find_vertices(loop, inside);
+        for (std::size_t i = 0; i < loop.count; ++i) on_edge[loop.edge[i]] = v[i];
+    }
+    return on_edge;
+}
+
+template <int dimension, class Real>
+void ElementContour<dimension, Real>::draw_between(LevelSurface<dimension>& surface,
+                                                   const Contour& contour, const Vertices& v,
+                                                   bool mirrored, unsigned boundary) {
+    surface_ = &surface;
+    tally_->add(simplices_of(contour));
+    for (std::size_t l = 0; l < contour.loop_count; ++l) {
+        const ContourLoop& loop = contour.loop[l];
+        Vertices in_loop;
+        for (std::size_t i = 0; i < loop.count; ++i) in_loop[i] = v[loop.edge[i]];
+        put_loop(loop, in_loop, mirrored);
+        if (boundary != 0) put_boundary(loop, in_loop, boundary);
+    }
 }
 
 template <int dimension, class Real>

@@ -4,6 +4,8 @@
 // The element at hand: its corners, and where a level cuts its edges.
 #pragma once
 
+#include <algorithm>
+
 #include <contours/cell_contour.hpp>
 #include <contours/level.hpp>
 #include <levels/finest_piece.hpp>
@@ -34,6 +36,14 @@ public:
     NESTGRID_INLINE void load(const View& view, bool keys) {
         view_ = &view;
         walk_->corners(view, keys ? key_.data() : nullptr, x_.data());
+    }
+    /// Loads an element that was put aside.
+    /// \param keys of the corners, or null; and so are their positions
+    void reload(const View& view, const NodeKey* keys, const Point* positions) {
+        view_ = &view;
+        if (keys == nullptr) return;
+        std::copy(keys, keys + view.corner_count(), key_.begin());
+        std::copy(positions, positions + view.corner_count(), x_.begin());
     }
     /// Chooses whether edges are cut on their finest pieces (finest_piece.hpp).
     void set_finest(bool finest) { cuts_finest_ = finest; }

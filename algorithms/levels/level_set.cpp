@@ -54,9 +54,11 @@ LevelSet<dimension, Real>::LevelSet(const Walk<Real>& walk, const LevelSearch<Re
       at_hand_{walk, first_attribute, tally_, options} {
     const std::size_t keys = walk.hierarchy().facts().node_count;
     for (const Builder& builder : builders) surfaces_.emplace_back(builder, keys);
-    for (Transitions& t : transitions_) {
+    for (Transitions<Real>& t : transitions_) {
         t.record.begin(at_hand_.cuts.attribute_count(), walk.hierarchy().make_elements());
         t.record.share(walk.hierarchy().facts().shared);
+        t.asides.begin(walk.components(), at_hand_.cuts.attribute_count(),
+                       walk.hierarchy().make_elements());
     }
     begin(search, builders);
 }
@@ -66,15 +68,13 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
                                       std::span<const Builder> builders) {
     search_ = &search;
     restart();
-    counts_of_first_walk_ = {};
     tally_ = SimplexTally();
     deepest_ = 0;
-    const bool records = dimension == 3 && search.may_stop_apart();
-    walks_.begin(records ? Pass::record : Pass::only,
-                 records ? search.bounds().finest_level() : -1);
+    records_ = dimension == 3 && search.may_stop_apart();
+    finest_level_ = records_ ? search.bounds().finest_level() : -1;
     at_hand_.plainly = draws_plainly();
     const bool suits = walk_->function_count() > 0 ? bisects_slices() : suits_patches();
-    bisects_ = suits && search.fits_patches() && !records && !surfaces_.empty();
+    bisects_ = suits && search.fits_patches() && !records_ && !surfaces_.empty();
     finest_ = cuts_finest();
     at_hand_.cuts.set_finest(finest_);
     normals_.begin(false);
@@ -85,23 +85,32 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
         surfaces_[i].begin(builders[i], normals, options_->verify);
         if (shared() != nullptr) surfaces_[i].keep_names(shared()->ranks().rank());
         transitions_[i].record.clear();
-        transitions_[i].drawn_below = &transitions_[i].record;
+        transitions_[i].record.know_by_names(knows_by_names(surfaces_[i]));
+        transitions_[i].asides.clear();
     }
-    at_hand_.loads_keys = options_->normals || options_->cap || options_->at_nodes ||
+    at_hand_.loads_keys = records_ || options_->normals || options_->cap || options_->at_nodes ||
                           (!surfaces_.empty() && surfaces_[0].names_vertices());
 }
 
-/// Makes a task do as `leader` does: takes over its pass and its limit, and adopts what all its
-/// tasks have recorded.
+/// Whether vertices on closed faces are known by names: where the surface does not number them, or
+/// may not have them because hidden elements or other ranks record them, and where gaps need
+/// attributes that a sink has taken.
+template <int dimension, class Real>
+bool LevelSet<dimension, Real>::knows_by_names(LevelSurface<dimension>& surface) const {
+    return !surface.names_vertices() || shared() != nullptr ||
+           walk_->hierarchy().offers(Feature::hidden) ||
+           (at_hand_.cuts.attribute_count() > 0 && !surface.builder().keeps_attributes());
+}
+
+/// Makes a task do as `leader` does.
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::join(const LevelSet& leader) {
-    walks_.join(leader.walks_);
     normals_.begin(options_->normals);
     tally_ = SimplexTally(leader.tally_.limit());
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         surfaces_[i].leave_normals();
         if (leader.surfaces_[i].counts_only()) surfaces_[i].count_only();
-        transitions_[i].drawn_below = leader.transitions_[i].drawn_below;
+        transitions_[i].record.know_by_names(leader.transitions_[i].record.by_names());
     }
     neighbours_ = leader.neighbours_;
 }
@@ -110,6 +119,7 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
     tally_ = SimplexTally(most);
     for (LevelSurface<dimension>& surface : surfaces_) surface.count_only();
+    for (Transitions<Real>& t : transitions_) t.record.know_by_names(true);
 }
 
 /// Whether the options ask for vertices, triangles and perhaps normals alone.
@@ -156,21 +166,20 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
         together(shared, "isosurfaces",
                  [&] { with_places(walk_->hierarchy(), part, walk_->function_count()); });
     };
-    const bool records = walks_.is_recording();
     alone([&] {
         find_hidden_faces();
         walk(executor);
     });
-    for (Transitions& t : transitions_) {
-        if (records && shared != nullptr) t.record.exchange();
+    for (Transitions<Real>& t : transitions_) {
+        if (records_ && shared != nullptr) t.record.exchange();
     }
     alone([&] {
-        if (records) {
-            finish_first_walk();
-            walk(executor);
-        }
+        tally_.begin_later();
         for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-            fill_gaps(i);
+            if (records_) {
+                at_hand_.cuts.set_level(search_->levels()[i]);
+                at_hand_.aside.draw(surfaces_[i], transitions_[i]);
+            }
             surfaces_[i].builder().flush();
         }
     });
@@ -178,15 +187,6 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
     for (LevelSurface<dimension>& surface : surfaces_) {
         surface.finish(options_->at_nodes && !surface.counts_only(), shared);
     }
-}
-
-template <int dimension, class Real>
-void LevelSet<dimension, Real>::finish_first_walk() {
-    walks_.finish();
-    counts_of_first_walk_ = counts_;
-    restart();
-    tally_.begin_later();
-    for (Transitions& t : transitions_) t.record.finish();
 }
 
 template <int dimension, class Real>
@@ -204,12 +204,10 @@ void LevelSet<dimension, Real>::agree(Ranks& ranks) {
         ranks.reduce(std::span(&extracted, 1), Ranks::Reduction::sum);
         surface.add_extracted(extracted - surface.extracted());
     }
-    for (TraversalCounts* counts : {&counts_, &counts_of_first_walk_}) {
-        std::array<std::uint64_t, 2> sums{counts->calls, counts->visited};
-        ranks.reduce(sums, Ranks::Reduction::sum);
-        counts->calls = sums[0];
-        counts->visited = sums[1];
-    }
+    std::array<std::uint64_t, 2> sums{counts_.calls, counts_.visited};
+    ranks.reduce(sums, Ranks::Reduction::sum);
+    counts_.calls = sums[0];
+    counts_.visited = sums[1];
 }
 
 template <int dimension, class Real>
@@ -228,11 +226,9 @@ void LevelSet<dimension, Real>::flush() {
     for (LevelSurface<dimension>& surface : surfaces_) surface.builder().flush();
 }
 
-/// Reports the counts of the first of two walks where the second one, which draws the rest alone,
-/// does not meet all elements.
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& result) const {
-    result.counts = walks_.draws_rest() ? counts_of_first_walk_ : counts_;
+    result.counts = counts_;
     result.counts.extracted = surfaces_[i].extracted();
     result.counts.limited = surfaces_[i].limited();
     result.range_bound = range_bound(search_->levels()[i], *search_);
@@ -245,10 +241,11 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
     result.position_bound = surfaces_[i].position_bound();
     if (surfaces_[i].builder().target() != nullptr) result.names = surfaces_[i].vertex_names();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
-    result.table_bytes =
-        normals_.memory_bytes() + walks_.memory_bytes() + neighbours_.memory_bytes();
+    result.table_bytes = normals_.memory_bytes() + neighbours_.memory_bytes();
     for (const auto& surface : surfaces_) result.table_bytes += surface.memory_bytes();
-    for (const auto& t : transitions_) result.table_bytes += t.record.memory_bytes();
+    for (const auto& t : transitions_) {
+        result.table_bytes += t.record.memory_bytes() + t.asides.memory_bytes();
+    }
 }
 
 template <int dimension, class Real>
@@ -257,7 +254,6 @@ NESTGRID_INLINE Decision LevelSet<dimension, Real>::inspect(const View& view, co
     counted_ = view.member->presence == Presence::partly ? 0 : 1;
     counts_.calls += counted_;
     if ((counts_.calls & 0xFFFFU) == 0) report_progress(0, 0);
-    if (view.father == nullptr && !walks_.enters(view)) return {Visit::skip, 0};
     const Decision decision = look(view, split);
     if (decision.visit != Visit::skip) counts_.visited += counted_;
     return decision;
@@ -284,13 +280,10 @@ void LevelSet<dimension, Real>::undo() {
     counts_.visited -= counted_;
 }
 
-/// Leaves out leaves that would only record and around which nothing is closed. With caps, inspects
-/// all others, because caps also lie in leaves that no level passes through.
+/// With caps, inspects all leaves, because caps also lie in those that no level passes through.
 template <int dimension, class Real>
 NESTGRID_INLINE Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values,
-                                                         NodeMask which, bool closed) {
-    const bool records_only = walks_.is_recording() && !walks_.draws_finest();
-    if (records_only && !tally_.limited() && !closed) return {};
+                                                         NodeMask which, bool /*closed*/) {
     if (options_->cap) return {0, which};
     const Leaves leaves = search_->cut_leaves(rule, values, which);
     const std::uint64_t before = counts_.calls;
@@ -349,13 +342,10 @@ void LevelSet<dimension, Real>::extract(const View& view) {
         at_hand_.bound = 0;
         at_hand_.position_bound = 0;
     }
-    const bool records = walks_.is_recording();
-    if (records && !walks_.draws_finest() && !view.closed.any && !tally_.limited()) return;
-    if (walks_.is_drawn(view)) return;
     const bool shown = view.member->hidden != Hidden::wholly;
     const unsigned boundary = options_->cap ? capped_faces(view) : 0U;
-    if (!shown && options_->cap && boundary == 0) return;
-    const bool draws = walks_.draws(view, shown || boundary != 0);
+    const bool draws = shown || boundary != 0;
+    if (!draws && (options_->cap || !view.closed.any)) return;
     const std::size_t corners = view.corner_count();
     at_hand_.loaded = false;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
@@ -365,11 +355,7 @@ void LevelSet<dimension, Real>::extract(const View& view) {
         const bool lies_in = whole && !options_->cap && search_->is_slice(level);
         const unsigned faces = lies_in ? boundary_in_slice(view, level) : boundary;
         if (inside == 0 || (whole && faces == 0)) continue;
-        if ((shown || boundary != 0) && !draws) {
-            if (shown && !whole) tally_.add_later(1);
-            walks_.leave_for_later(view);
-        }
-        if (draws || view.closed.any) extract(i, view, inside, faces, draws);
+        extract(i, view, inside, faces, draws);
     }
 }
 
@@ -387,19 +373,20 @@ unsigned LevelSet<dimension, Real>::boundary_in_slice(const View& view,
     return faces == 0 ? 0 : faces & walk_->boundary(view);
 }
 
-/// Records and draws one level in an element.
+/// Draws one level in an element.
 /// \param inside the corners inside the level, one bit each
 /// \param boundary the faces to be capped
+/// \param draws whether the element is shown or draws caps; otherwise it only records
 template <int dimension, class Real>
 NESTGRID_INLINE void LevelSet<dimension, Real>::extract(std::size_t level, const View& view,
                                                         unsigned inside, unsigned boundary,
                                                         bool draws) {
     load(view, draws);
     at_hand_.cuts.set_level(search_->levels()[level]);
-    if (walks_.is_recording() && view.closed.any) record(level, inside, boundary);
-    if (!draws) return;
-    if (view.member->hidden == Hidden::wholly) return draw_beyond(level, inside, boundary);
-    draw(level, inside, boundary);
+    if (!records_ || (draws && view.level == finest_level_ && !view.closed.any)) {
+        return draw(level, inside, boundary);
+    }
+    draw_beside_finer(level, inside, boundary, draws);
 }
 
 /// Loads the corners of the element, and adds its gradients where it is drawn.
@@ -407,63 +394,81 @@ template <int dimension, class Real>
 NESTGRID_INLINE void LevelSet<dimension, Real>::load(const View& view, bool draws) {
     if (at_hand_.loaded) return;
     at_hand_.loaded = true;
-    const bool keys =
-        at_hand_.loads_keys || walks_.adopts() || view.closed.any || view.interpolated != 0;
+    const bool keys = at_hand_.loads_keys || view.closed.any || view.interpolated != 0;
     at_hand_.cuts.load(view, keys);
     deepest_ = std::max(deepest_, view.level);
     const bool shown = view.member->hidden != Hidden::wholly;
-    if (options_->normals && draws && shown) normals_.add(at_hand_.cuts, walks_.adopts());
+    if (options_->normals && draws && shown) normals_.add(at_hand_.cuts);
 }
 
+/// The contour of an element if it may be drawn plainly.
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::record(std::size_t level, unsigned inside, unsigned boundary) {
-    const View& view = at_hand_.cuts.view();
-    TransitionContours& record = transitions_[level].record;
-    if (inside != all_corners(view.corner_count())) {
-        // Beyond the other faces of a hidden element caps end where its neighbours draw them.
-        const bool some = options_->cap && view.member->hidden == Hidden::wholly;
-        const unsigned faces = some ? boundary : ~0U;
-        const unsigned cut_faces = at_hand_.contour.table(view.shape).cut_faces(inside);
-        record_transitions(at_hand_.cuts, cut_faces & faces, inside, record);
-    }
-    if (boundary != 0) at_hand_.cap.record(inside, boundary, record);
+NESTGRID_INLINE const Contour* LevelSet<dimension, Real>::plain_contour(Shape shape,
+                                                                        unsigned inside) {
+    return at_hand_.plainly ? at_hand_.contour.table(shape).plain(inside) : nullptr;
 }
 
+/// The faces of an element on the boundary of the domain, one bit each, where the surface keeps its
+/// edges there.
+template <int dimension, class Real>
+NESTGRID_INLINE unsigned LevelSet<dimension, Real>::boundary_of(
+    const LevelSurface<dimension>& surface, const View& view) const {
+    return surface.names_vertices() ? walk_->boundary(view) : 0;
+}
+
+/// Draws an element beside which no finer one draws.
 template <int dimension, class Real>
 NESTGRID_INLINE void LevelSet<dimension, Real>::draw(std::size_t level, unsigned inside,
                                                      unsigned boundary) {
     const View& view = at_hand_.cuts.view();
     LevelSurface<dimension>& surface = surfaces_[level];
     auto& contour = at_hand_.contour;
-    const TransitionContours* const below =
-        walks_.adopts() ? transitions_[level].drawn_below : nullptr;
-    const ContourTable& table = contour.table(view.shape);
-    const bool adopts = at_hand_.adoption.find(below, table.cut_faces(inside));
-    const Contour* const plain = at_hand_.plainly ? table.plain(inside) : nullptr;
-    unsigned joins = 0;
-    if (plain == nullptr || adopts) {
-        contour.begin(surface);
-        joins = at_hand_.adoption.choose(inside, table.alternating(inside));
+    if (view.member->hidden == Hidden::wholly) {  // caps of leaves that are shown, on its faces
+        contour.begin_beyond(surface);
+        at_hand_.cap.draw(inside, boundary, {});
+        if (surface.counts_only()) return surface.forget_element();
+        return surface.builder().flush_if_full();
     }
-    if (plain != nullptr && !(adopts && contour.chained())) {
+    if (const Contour* const plain = plain_contour(view.shape, inside)) {
         if (surface.counts_only()) return tally_.add(contour.simplices_of(*plain));
         contour.draw_plainly(surface, *plain, inside);
         return end_element(surface);
     }
-    if (inside != all_corners(view.corner_count())) contour.draw(inside, joins);
-    if (boundary != 0) at_hand_.cap.draw(inside, boundary, below);
+    contour.begin(surface);
+    const unsigned joins = contour.own_joins(contour.table(view.shape).alternating(inside));
+    if (inside != all_corners(view.corner_count())) {
+        contour.draw(inside, joins, boundary_of(surface, view));
+    }
+    if (boundary != 0) at_hand_.cap.draw(inside, boundary, {});
     if (contour.begun()) end_element(surface);
     if (surface.counts_only()) surface.forget_element();
 }
 
-/// Draws the caps of a leaf that is shown on faces of a hidden element.
+/// Draws an element, or puts it aside, where elements may stop beside finer ones. Records what it
+/// draws on its closed faces.
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::draw_beyond(std::size_t level, unsigned inside, unsigned faces) {
+void LevelSet<dimension, Real>::draw_beside_finer(std::size_t level, unsigned inside,
+                                                  unsigned boundary, bool draws) {
+    const View& view = at_hand_.cuts.view();
     LevelSurface<dimension>& surface = surfaces_[level];
-    at_hand_.contour.begin_beyond(surface);
-    at_hand_.cap.draw(inside, faces, walks_.adopts() ? transitions_[level].drawn_below : nullptr);
-    if (surface.counts_only()) return surface.forget_element();
-    surface.builder().flush_if_full();
+    Transitions<Real>& transitions = transitions_[level];
+    auto& aside = at_hand_.aside;
+    const bool by_names = transitions.record.by_names();
+    const Contour* const plain = plain_contour(view.shape, inside);
+    const bool at_once = view.level == finest_level_;
+    typename ElementContour<dimension, Real>::Vertices vertices;
+    if (at_once && draws && plain != nullptr && !by_names) {
+        at_hand_.contour.draw_plainly(surface, *plain, inside, &vertices);
+        aside.record(transitions.record, inside, boundary, vertices);
+        return end_element(surface);
+    }
+    if (!by_names) vertices = aside.find_vertices(surface, plain, inside);
+    if (view.closed.any) aside.record(transitions.record, inside, boundary, vertices);
+    if (!draws) return;
+    if (at_once) return draw(level, inside, boundary);
+    const unsigned on_boundary = boundary_of(surface, view);
+    aside.put_aside(surface, transitions, inside, boundary, on_boundary, vertices);
+    if (view.member->hidden != Hidden::wholly) end_element(surface);
 }
 
 /// Finds where caps are drawn beside hidden elements.
@@ -514,21 +519,6 @@ NESTGRID_INLINE void LevelSet<dimension, Real>::end_element(LevelSurface<dimensi
             position_bound(at_hand_.cuts, *options_->position_bounds, at_hand_.position_bound));
     }
     if (!surface.counts_only()) surface.builder().flush_if_full();
-}
-
-/// Draws the polygons in faces that their two sides divide in different directions.
-template <int dimension, class Real>
-void LevelSet<dimension, Real>::fill_gaps(std::size_t level) {
-    LevelSurface<dimension>& surface = surfaces_[level];
-    const TransitionContours& record = transitions_[level].record;
-    std::vector<SurfaceCut> loop;
-    for (const TransitionContours::Gap& gap : record.gaps()) {
-        if (surface.counts_only()) surface.forget_element();
-        loop.clear();
-        for (const TransitionContours::Index v : gap.loop) loop.push_back(record.cut(v));
-        at_hand_.contour.fill_gap(surface, loop, record.element(gap.owner), gap.owner.shape,
-                                  gap.owner.level);
-    }
 }
 
 template class LevelSet<2, float>;

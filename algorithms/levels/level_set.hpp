@@ -7,13 +7,11 @@
 #include <memory>
 #include <vector>
 
-#include <levels/cap_contour.hpp>
+#include <levels/aside_contour.hpp>
 #include <levels/hidden_neighbours.hpp>
 #include <levels/level_tasks.hpp>
 #include <levels/normals.hpp>
 #include <levels/patch_level_set.hpp>
-#include <levels/transitions.hpp>
-#include <levels/two_walks.hpp>
 #include <nestgrid/algorithms/ranks.hpp>
 #include <walk/frontier.hpp>
 
@@ -55,13 +53,10 @@ public:
     // Answers to the walk (visitor.hpp, frontier.hpp).
     Decision inspect(const View& view, const Split& split) override;
     void extract(const View& view) override;
-    NodeMask children(const View& view) override { return walks_.children(view); }
     Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
     /// Hidden elements are walked to record what they would draw on faces around them, and to draw
     /// caps on those faces which they divide more finely than the leaf that is shown.
-    bool sees_hidden() const override {
-        return walks_.is_recording() || neighbours_.hidden_elements_draw();
-    }
+    bool sees_hidden() const override { return records_ || neighbours_.hidden_elements_draw(); }
     bool takes(const View& view) override;
     Decision look(const View& view, const Split& split) override;
     void undo() override;
@@ -74,14 +69,14 @@ private:
     const SharedNodes* shared() const { return walk_->hierarchy().facts().shared; }
     void join(const LevelSet& leader);
     void walk(const Executor& executor);
-    void finish_first_walk();
+    bool knows_by_names(LevelSurface<dimension>& surface) const;
     void extract(std::size_t level, const View& view, unsigned inside, unsigned boundary,
                  bool draws);
-    void record(std::size_t level, unsigned inside, unsigned boundary);
     void draw(std::size_t level, unsigned inside, unsigned boundary);
+    void draw_beside_finer(std::size_t level, unsigned inside, unsigned boundary, bool draws);
+    const Contour* plain_contour(Shape shape, unsigned inside);
+    unsigned boundary_of(const LevelSurface<dimension>& surface, const View& view) const;
     void end_element(LevelSurface<dimension>& surface);
-    void draw_beyond(std::size_t level, unsigned inside, unsigned faces);
-    void fill_gaps(std::size_t level);
     void find_hidden_faces();
     unsigned capped_faces(const View& view);
     bool may_cap_below(const View& view);
@@ -102,17 +97,12 @@ private:
         counts_.visited += visited;
     }
 
-    /// What elements record on closed faces for one level.
-    struct Transitions {
-        TransitionContours record;
-        const TransitionContours* drawn_below = nullptr;  // the record of all tasks
-    };
     /// The element at hand.
     struct AtHand {
         ElementCuts<Real> cuts;
         ElementContour<dimension, Real> contour;
-        TransitionAdoption<dimension, Real> adoption;
         CapContour<dimension, Real> cap;
+        AsideContour<dimension, Real> aside;
         CriterionQuestion question;
         Real bound = 0;             // how far U may leave the range of its corners
         double position_bound = 0;  // how far true positions may be from the mapped ones, below it
@@ -124,8 +114,8 @@ private:
                const IsosurfaceOptions& options)
             : cuts(walk, first_attribute),
               contour(cuts, tally, options),
-              adoption(cuts, contour),
-              cap(cuts, contour) {}
+              cap(cuts, contour),
+              aside(cuts, contour, cap, tally, options) {}
     };
 
     const Walk<Real>* walk_;
@@ -133,14 +123,14 @@ private:
     const IsosurfaceOptions* options_;
     std::size_t first_attribute_;
     std::vector<LevelSurface<dimension>> surfaces_;  // one a level
-    std::vector<Transitions> transitions_;           // one a level
-    TwoWalks<Real> walks_;
+    std::vector<Transitions<Real>> transitions_;     // one a level
+    bool records_ = false;                           // elements may stop beside finer ones
+    int finest_level_ = -1;              // a level on which no element has a finer neighbour, or -1
     HiddenNeighbours<Real> neighbours_;  // where caps are drawn beside hidden elements
     SimplexTally tally_;
     Normals<Real> normals_;
     AtHand at_hand_;
     TraversalCounts counts_;
-    TraversalCounts counts_of_first_walk_;
     std::uint64_t counted_ = 1;  // by the last inspect(): 0 where another rank counts the element
     int deepest_ = 0;
     bool bisects_ = false;  // takes() walks bisections in patches

@@ -66,7 +66,6 @@ void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real
     leader.add(drawn.counts_.calls, drawn.counts_.visited);
     leader.deepest_ = std::max(leader.deepest_, drawn.deepest_);
     leader.tally_.add(drawn.tally_);
-    leader.walks_.append(drawn.walks_);
     leader.normals_.append(drawn.normals_);
     for (std::size_t i = 0; i < leader.surfaces_.size(); ++i) {
         LevelSurface<dimension>& surface = leader.surfaces_[i];
@@ -76,12 +75,16 @@ void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real
         surface.raise_off_level(drawn.surfaces_[i].off_level());
         surface.raise_leaf_error(drawn.surfaces_[i].leaf_error());
         surface.raise_position_bound(drawn.surfaces_[i].position_bound());
-        if (leader.walks_.is_recording()) {
-            leader.transitions_[i].record.append(drawn.transitions_[i].record);
+        std::vector<std::uint32_t> numbers;
+        if (!surface.counts_only()) numbers = surface.add_part(task.parts[i], &drawn.surfaces_[i]);
+        if (leader.records_) {
+            auto& to = leader.transitions_[i];
+            const auto& from = drawn.transitions_[i];
+            if (to.record.by_names()) numbers.clear();
+            to.record.append(from.record, numbers);
+            to.asides.append(from.asides, numbers);
         }
-        if (surface.counts_only()) continue;
-        surface.add_part(task.parts[i], &drawn.surfaces_[i]);
-        surface.builder().flush_if_full();
+        if (!surface.counts_only()) surface.builder().flush_if_full();
     }
     leader.report_progress(0, 0);
 }

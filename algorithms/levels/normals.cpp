@@ -49,9 +49,9 @@ Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, con
     return detail::interpolate(local, parent.data());
 }
 
-/// The way down to an element, coarse element first, behind the number of the walk.
+/// The way down to an element, coarse element first.
 template <class Real>
-DrawingPlace place_of(const ElementView<Real>& view, bool later) {
+DrawingPlace place_of(const ElementView<Real>& view) {
     DrawingPlace place;
     for (const ElementView<Real>* at = &view; at->father != nullptr; at = at->father) {
         place.push_back(static_cast<char>(at->child));
@@ -59,7 +59,6 @@ DrawingPlace place_of(const ElementView<Real>& view, bool later) {
     for (std::size_t coarse = view.coarse, i = 0; i < 8; ++i, coarse >>= 8U) {
         place.push_back(static_cast<char>(coarse & 0xFFU));
     }
-    place.push_back(later ? '\1' : '\0');
     return {place.rbegin(), place.rend()};
 }
 
@@ -74,7 +73,7 @@ void Normals<Real>::begin(bool logs) {
 }
 
 template <class Real>
-void Normals<Real>::add(const ElementCuts<Real>& element, bool later) {
+void Normals<Real>::add(const ElementCuts<Real>& element) {
     const View& view = element.view();
     const std::size_t corners = view.corner_count();
     const std::size_t components = element.walk().components();
@@ -87,7 +86,7 @@ void Normals<Real>::add(const ElementCuts<Real>& element, bool later) {
         corner_gradients(view.topology(), std::span(element.positions()).first(corners),
                          std::span(value).first(corners), std::span(drawn).first(corners));
     }
-    if (shared_ != nullptr) log_shared(element, std::span(drawn).first(corners), later);
+    if (shared_ != nullptr) log_shared(element, std::span(drawn).first(corners));
     for (std::size_t i = 0; i < corners; ++i) {
         const Slot slot = sums_.slot(element.keys()[i]);
         if (!own_) {
@@ -106,11 +105,11 @@ void Normals<Real>::add(const ElementCuts<Real>& element, bool later) {
 /// Logs the terms at nodes that other ranks have, too.
 template <class Real>
 void Normals<Real>::log_shared(const ElementCuts<Real>& element,
-                               std::span<const CornerGradient> drawn, bool later) {
+                               std::span<const CornerGradient> drawn) {
     DrawingPlace place;
     for (std::size_t i = 0; i < drawn.size(); ++i) {
         if (!shared_->is_shared(element.keys()[i])) continue;
-        if (place.empty()) place = place_of(element.view(), later);
+        if (place.empty()) place = place_of(element.view());
         of_shared_.add(element.keys()[i], place, drawn[i]);
     }
 }

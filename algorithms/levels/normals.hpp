@@ -25,8 +25,7 @@ public:
     /// \param logs whether to log what add() adds, for append()
     void begin(bool logs);
     /// Adds the gradients at the corners of an element that is drawn.
-    /// \param later in the second of two walks
-    void add(const ElementCuts<Real>& element, bool later);
+    void add(const ElementCuts<Real>& element);
     /// Adds what `other` has logged, in its order.
     void append(const Normals& other);
 
@@ -41,8 +40,7 @@ private:
     using View = ElementView<Real>;
 
     void add(Slot slot, const CornerGradient& gradient);
-    void log_shared(const ElementCuts<Real>& element, std::span<const CornerGradient> drawn,
-                    bool later);
+    void log_shared(const ElementCuts<Real>& element, std::span<const CornerGradient> drawn);
 
     bool own_;  // the field has gradients
     bool logs_ = false;

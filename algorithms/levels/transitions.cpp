@@ -14,13 +14,6 @@ bool is_cut(unsigned signs, std::size_t side, std::size_t corners) {
     return (signs >> side & 1U) != (signs >> ((side + 1) % corners) & 1U);
 }
 
-/// A face of an element; in two dimensions the element itself as a face.
-template <int dimension>
-FaceTopology loop_of(const Topology& topology, std::size_t face) {
-    if (dimension == 2) return {Shape::quadrilateral, 4, {0, 1, 3, 2}};
-    return topology.face[face];
-}
-
 /// The segments that an element draws on its closed faces, each from one of its edges to another.
 class FaceSegments {
 public:
@@ -63,19 +56,23 @@ private:
 
 template <class Real>
 void record_transitions(const ElementCuts<Real>& element, unsigned cut_faces, unsigned inside,
+                        std::span<const std::uint32_t, max_edges> vertices,
                         TransitionContours& record) {
     const FaceSegments segments(element, cut_faces, inside);
     const ElementView<Real>& view = element.view();
-    std::array<KeyPair, max_edges> names;  // fetched at once, so that none waits for another
-    for (unsigned left = segments.edges(); left != 0; left &= left - 1) {
-        const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
-        names[e] = element.name(e);
-        record.expect(names[e]);
-    }
-    std::array<TransitionContours::Index, max_edges> vertices;
-    for (unsigned left = segments.edges(); left != 0; left &= left - 1) {
-        const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
-        vertices[e] = record.vertex(names[e], [&] { return element.cut(e); });
+    std::array<TransitionContours::Index, max_edges> named;
+    if (record.by_names()) {
+        std::array<KeyPair, max_edges> names;  // fetched at once, so that none waits for another
+        for (unsigned left = segments.edges(); left != 0; left &= left - 1) {
+            const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
+            names[e] = element.name(e);
+            record.expect(names[e]);
+        }
+        for (unsigned left = segments.edges(); left != 0; left &= left - 1) {
+            const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
+            named[e] = record.vertex(names[e], [&] { return element.cut(e); });
+        }
+        vertices = named;
     }
     for (const FaceSegments::Segment& segment : segments.all()) {
         record.record(segment.around, vertices[segment.edge[0]], vertices[segment.edge[1]],
@@ -84,21 +81,14 @@ void record_transitions(const ElementCuts<Real>& element, unsigned cut_faces, un
 }
 
 template <int dimension, class Real>
-bool TransitionAdoption<dimension, Real>::find(const TransitionContours* drawn_below,
-                                               unsigned cut_faces) {
+bool TransitionAdoption<dimension, Real>::find(const TransitionContours& record,
+                                               const Aside& aside) {
     faces_ = 0;
-    if (dimension == 2 || drawn_below == nullptr || drawn_below->empty()) return false;
-    drawn_below_ = drawn_below;
-    const Topology& t = cuts_->view().topology();
-    std::array<NodeKey, max_corners> mixed;
-    for (std::size_t i = 0; i < t.corners; ++i) mixed[i] = nestgrid::detail::mix(cuts_->keys()[i]);
-    for (unsigned left = cut_faces; left != 0; left &= left - 1) {
+    record_ = &record;
+    if (record.empty()) return false;
+    for (unsigned left = aside.faces; left != 0; left &= left - 1) {
         const auto f = static_cast<std::size_t>(std::countr_zero(left));
-        FaceKey key;
-        for (std::size_t i = 0; i < t.face[f].corners; ++i) {
-            key.add_mixed(mixed[t.face[f].corner[i]]);
-        }
-        if (const Number* face = drawn_below->find_face(key.key())) {
+        if (const Number* face = record.find_face(aside.face_key[f])) {
             on_face_[f] = *face;
             faces_ |= 1U << f;
         }
@@ -111,12 +101,11 @@ bool TransitionAdoption<dimension, Real>::find(const TransitionContours* drawn_b
 /// \return whether these segments join the corners inside the level; nothing where the finer side
 ///        drew none
 template <int dimension, class Real>
-auto TransitionAdoption<dimension, Real>::adopt(std::size_t on, std::size_t side, unsigned signs)
-    -> Found {
-    const ElementView<Real>& view = cuts_->view();
-    const FaceTopology& face = view.topology().face[on];
+auto TransitionAdoption<dimension, Real>::adopt(const Aside& aside, std::size_t on,
+                                                std::size_t side, unsigned signs) -> Found {
+    const FaceTopology& face = topology(aside.shape).face[on];
     const std::size_t n = face.corners;
-    const Number* from = drawn_below_->find(cuts_->name(edge_at(view.shape, face, side)));
+    const Number* from = recorded_[edge_at(aside.shape, face, side)];
     if (from == nullptr) return Found::nothing;
     constexpr Number none = LevelSurface<dimension>::none;
     std::array<Number, 2> ends{none, none};
@@ -124,14 +113,14 @@ auto TransitionAdoption<dimension, Real>::adopt(std::size_t on, std::size_t side
     std::size_t count = 0;
     for (std::size_t i = 0; i < n; ++i) {
         if (!is_cut(signs, i, n) || (signs >> i & 1U) == (signs >> side & 1U)) continue;
-        const Number* end = drawn_below_->find(cuts_->name(edge_at(view.shape, face, i)));
+        const Number* end = recorded_[edge_at(aside.shape, face, i)];
         if (end == nullptr) return Found::nothing;
         sides[count] = i;
         ends[count++] = *end;
     }
     between_.clear();
     std::size_t end = 0;
-    const bool found = drawn_below_->follow(
+    const bool found = record_->follow(
         on_face_[on], *from,
         [&](Number v) {
             if (v != ends[0] && v != ends[1]) return false;
@@ -141,39 +130,35 @@ auto TransitionAdoption<dimension, Real>::adopt(std::size_t on, std::size_t side
         [&](Number v) { between_.push_back(v); });
     if (!found) return Found::nothing;
     // Loops run from where the sign rises to where it falls.
-    const bool mirrored = view.orientation < 0;
-    const std::size_t rises = mirrored ? end : side;
-    const std::size_t falls = mirrored ? side : end;
+    const std::size_t rises = aside.mirrored ? end : side;
+    const std::size_t falls = aside.mirrored ? side : end;
     if (!between_.empty()) {
-        if (mirrored) std::reverse(between_.begin(), between_.end());
-        for (Number& v : between_) v = contour_->adopted(drawn_below_->cut(v), face);
-        contour_->set_chain(edge_at(view.shape, face, rises), between_);
+        if (aside.mirrored) std::reverse(between_.begin(), between_.end());
+        for (Number& v : between_) v = contour_->adopted(*record_, v, face);
+        contour_->set_chain(edge_at(aside.shape, face, rises), between_);
     }
     return (falls + 1) % n == rises ? Found::joined : Found::apart;
 }
 
 template <int dimension, class Real>
-unsigned TransitionAdoption<dimension, Real>::choose(unsigned inside, unsigned alternating) {
-    const ElementView<Real>& view = cuts_->view();
-    const Topology& t = view.topology();
-    unsigned joins = 0;
-    for (unsigned left = alternating; left != 0; left &= left - 1) {
-        const auto f = static_cast<std::size_t>(std::countr_zero(left));
-        if (cuts_->joined(loop_of<dimension>(t, f))) joins |= 1U << f;
+unsigned TransitionAdoption<dimension, Real>::choose(const Aside& aside,
+                                                     std::span<const KeyPair, max_edges> names) {
+    for (unsigned left = aside.edges; left != 0; left &= left - 1) {
+        const auto e = static_cast<std::size_t>(std::countr_zero(left));
+        recorded_[e] = record_->by_names() ? record_->find(names[e]) : &aside.vertex[e];
     }
+    unsigned joins = aside.joins;
     for (unsigned left = faces_; left != 0; left &= left - 1) {
         const auto f = static_cast<std::size_t>(std::countr_zero(left));
-        const FaceTopology& face = t.face[f];
-        const unsigned signs = signs_of(face, inside);
+        const FaceTopology& face = topology(aside.shape).face[f];
+        const unsigned signs = signs_of(face, aside.inside);
         for (std::size_t i = 0; i < face.corners; ++i) {
             // The finer side's segments run from the cut at which this element's segment comes back
             // to the one at which it leaves.
             const bool begins_inside = (signs >> i & 1U) != 0;
-            if (!is_cut(signs, i, face.corners) || begins_inside != (view.orientation < 0)) {
-                continue;
-            }
-            const Found found = adopt(f, i, signs);
-            if (found == Found::nothing || (alternating >> f & 1U) == 0) continue;
+            if (!is_cut(signs, i, face.corners) || begins_inside != aside.mirrored) continue;
+            const Found found = adopt(aside, f, i, signs);
+            if (found == Found::nothing || !alternate(face.corners, signs)) continue;
             joins = (joins & ~(1U << f)) | (unsigned{found == Found::joined} << f);
         }
     }
@@ -181,9 +166,9 @@ unsigned TransitionAdoption<dimension, Real>::choose(unsigned inside, unsigned a
 }
 
 template void record_transitions(const ElementCuts<float>&, unsigned, unsigned,
-                                 TransitionContours&);
+                                 std::span<const std::uint32_t, max_edges>, TransitionContours&);
 template void record_transitions(const ElementCuts<double>&, unsigned, unsigned,
-                                 TransitionContours&);
+                                 std::span<const std::uint32_t, max_edges>, TransitionContours&);
 template class TransitionAdoption<2, float>;
 template class TransitionAdoption<2, double>;
 template class TransitionAdoption<3, float>;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What ranks tell each other between the two walks of a surface: segments on closed faces, and
+// What ranks tell each other behind the walk of a surface: segments on closed faces, and
 // nodes of caps on closed edges, that other ranks may adopt; and in which direction faces are
 // divided, so that gaps are found. One exchange.
 #include <contours/transition_contours.hpp>

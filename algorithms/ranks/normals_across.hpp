@@ -20,7 +20,7 @@
 
 namespace nestgrid::engine {
 
-/// Where an element is in the order in which one rank draws: pass, coarse element, and way down.
+/// Where an element is in the order in which one rank draws: coarse element, and way down.
 using DrawingPlace = std::string;
 
 /// Terms of gradients at shared nodes.

@@ -79,10 +79,13 @@ void LevelSurface<dimension>::verify(Number number, const Point& x) const {
 }
 
 template <int dimension>
-void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
-                                       const LevelSurface* drawn) {
+auto LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
+                                       const LevelSurface* drawn) -> std::vector<Number> {
     const Surface<dimension>& surface = part.surface;
-    if (!builder_.shares_vertices()) return builder_.hand_over(surface);
+    if (!builder_.shares_vertices()) {
+        builder_.hand_over(surface);
+        return {};
+    }
     constexpr std::size_t ahead = 16;
     const std::span<const Point> x(surface.vertices);
     const std::size_t stride = x.empty() ? 0 : surface.attributes.size() / x.size();
@@ -127,11 +130,12 @@ void LevelSurface<dimension>::add_part(const SurfacePart<dimension>& part,
                     std::span(at_nodes.attributes).subspan(i * stride, stride));
     }
     builder_.add_part(surface, number);
-    if (!keeps_simplices_) return;
-    for (auto simplex : surface.simplices) {
+    for (auto simplex :
+         keeps_simplices_ ? std::span(surface.simplices) : std::span<const Simplex>()) {
         for (Number& v : simplex) v = number[v];
         simplices_.push_back(simplex);
     }
+    return number;
 }
 
 /// The gradient at a vertex, interpolated between its nodes; 0 where neither node has a gradient.

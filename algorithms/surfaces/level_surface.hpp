@@ -122,7 +122,9 @@ public:
     /// Appends a part. Numbers its vertices in their order; those that earlier parts have keep
     /// their numbers.
     /// \param drawn what the part was drawn by, where this says more of vertices than the part
-    void add_part(const SurfacePart<dimension>& part, const LevelSurface* drawn = nullptr);
+    /// \return the numbers that the vertices of the part have here, where elements share vertices
+    std::vector<Number> add_part(const SurfacePart<dimension>& part,
+                                 const LevelSurface* drawn = nullptr);
 
     /// Whether it was noted that a vertex lies at a node.
     bool is_at_node(Number vertex) const {

@@ -162,6 +162,13 @@ public:
     NESTGRID_INLINE Point position(Number vertex) const {
         return vertex < taken_ ? mesh_->position(vertex) : surface_->vertices[vertex - taken_];
     }
+    /// Whether attributes() of all vertices are at hand, which a sink may have taken.
+    bool keeps_attributes() const { return chunk_ == std::numeric_limits<std::size_t>::max(); }
+    /// The attributes of a vertex. Requires keeps_attributes().
+    std::span<const double> attributes(Number vertex) const {
+        const std::size_t count = surface_->attributes.size() / surface_->vertices.size();
+        return std::span(surface_->attributes).subspan(vertex * count, count);
+    }
     bool keeps_elements() const { return elements_; }
     void add_element(const Handle& element, Shape shape, int level) {
         if (!elements_) return;
@@ -220,9 +227,12 @@ public:
     void add_boundary(const typename Target::Ridge& vertices) {
         surface_->boundary.push_back(vertices);
     }
-    /// Hands the chunk to the sink where there is one and the chunk is full.
+    /// Hands the chunk to the sink where there is one and the chunk is full: of simplices, or of
+    /// vertices of elements that are put aside.
     void flush_if_full() {
-        if (surface_->simplices.size() >= chunk_) flush();
+        if (surface_->simplices.size() >= chunk_ || surface_->vertices.size() / 4 >= chunk_) {
+            flush();
+        }
     }
     /// Hands the rest to the sink where there is one.
     /// \throw UnusableValue where an attribute is no number
