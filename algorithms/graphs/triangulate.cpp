@@ -18,6 +18,8 @@ Shading draw(const Graph<Real>& graph, const ShadingOptions& options, const Exec
     } catch (const Cancelled&) {
         result.cancelled = true;
     }
+    const SharedNodes* const shared = graph.walk->hierarchy().facts().shared;
+    if (shared != nullptr) drawing.agree(shared->ranks());
     drawing.report(result);
     if (graph.criterion->insists()) result.error_bound = result.range_bound;
     return result;
@@ -36,8 +38,11 @@ template <class Real>
 Shading triangulate(const Hierarchy<Real>& hierarchy, double scale,
                     const HierarchicalIndicator& indicator, const ShadingOptions& options,
                     const Executor& executor) {
-    hierarchy.facts().require_dimension(2);
-    if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
+    together(hierarchy.facts().shared, "triangles", [&] {
+        hierarchy.facts().require_dimension(2);
+        if (options.threshold >= 0) return;
+        throw InvalidInput("the threshold is negative or not a number");
+    });
     const Threshold s(&indicator, options.threshold);
     return triangulate(hierarchy, scale, s, indicator, options, executor);
 }

@@ -5,6 +5,8 @@
 #include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/error.hpp>
+#include <ranks/agreement.hpp>
+#include <ranks/join_lines.hpp>
 
 namespace nestgrid {
 
@@ -12,13 +14,15 @@ template <class Real>
 Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
                   const Criterion& criterion, const Bounds& bounds,
                   const IsosurfaceOptions& options, const Executor& executor) {
-    hierarchy.facts().require_one_process("a list of isolines");
+    const engine::SharedNodes* const shared = hierarchy.facts().shared;
     IsosurfaceOptions kept = options;
     kept.normals = kept.elements = kept.reference = false;
     auto drawn = isosurfaces<2>(hierarchy, values, criterion, bounds, kept, executor);
     Isolines result;
     for (std::size_t i = 0; i < drawn.size(); ++i) {
-        append_polylines(result.lines, drawn[i].surface, values[i]);
+        if (shared != nullptr) engine::join_lines(drawn[i].surface, drawn[i].names, *shared);
+        engine::together(shared, "isolines",
+                         [&] { append_polylines(result.lines, drawn[i].surface, values[i]); });
         drawn[i].surface = {};  // its memory is needed for the lines
         result.counts.calls = drawn[i].counts.calls;
         result.counts.visited = drawn[i].counts.visited;
@@ -34,7 +38,10 @@ template <class Real>
 Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
                   const HierarchicalIndicator& indicator, const IsosurfaceOptions& options,
                   const Executor& executor) {
-    if (options.max_triangles != 0) throw InvalidInput("a limit of segments is for one isoline");
+    engine::together(hierarchy.facts().shared, "isolines", [&] {
+        if (options.max_triangles == 0) return;
+        throw InvalidInput("a limit of segments is for one isoline");
+    });
     const auto s = criterion_for<2>(hierarchy, 0, indicator, options, executor);
     return isolines(hierarchy, values, s, indicator, options, executor);
 }

@@ -201,15 +201,14 @@ void LevelSet<dimension, Real>::agree(Ranks& ranks) {
         surface.raise_off_level(off_level);
         surface.raise_leaf_error(leaf_error);
         std::uint64_t extracted = surface.extracted();
-        ranks.reduce(std::span(&extracted, 1), Ranks::Reduction::sum);
+        std::array<std::uint64_t*, 1> sum{&extracted};
+        take_sums(ranks, sum);
         surface.add_extracted(extracted - surface.extracted());
     }
-    for (TraversalCounts* counts : {&counts_, &counts_of_first_walk_}) {
-        std::array<std::uint64_t, 2> sums{counts->calls, counts->visited};
-        ranks.reduce(sums, Ranks::Reduction::sum);
-        counts->calls = sums[0];
-        counts->visited = sums[1];
-    }
+    std::array<std::uint64_t*, 4> sums{&counts_.calls, &counts_.visited,
+                                       &counts_of_first_walk_.calls,
+                                       &counts_of_first_walk_.visited};
+    take_sums(ranks, sums);
 }
 
 template <int dimension, class Real>
@@ -253,8 +252,7 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
 
 template <int dimension, class Real>
 NESTGRID_INLINE Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
-    // Ranks that have parts of one element all visit it; that with its first leaf counts it.
-    counted_ = view.member->presence == Presence::partly ? 0 : 1;
+    counted_ = counted(view);
     counts_.calls += counted_;
     if ((counts_.calls & 0xFFFFU) == 0) report_progress(0, 0);
     if (view.father == nullptr && !walks_.enters(view)) return {Visit::skip, 0};

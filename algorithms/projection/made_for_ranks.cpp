@@ -79,7 +79,6 @@ void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
     const std::array refused{
         Refused{own == nullptr && !of_leaves, "a surface under other bounds than those of offsets"},
         Refused{criterion.insists(), "a surface under a criterion that is not saturated"},
-        Refused{options.max_triangles != 0, "a number of triangles"},
         Refused{options.normals && options.at_nodes,
                 "a surface with normals and vertices at nodes"},
         Refused{options.normals && own_gradients, "a field with gradients of its own"},
@@ -90,13 +89,17 @@ void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
     refuse_first(refused);
 }
 
+std::string name_of(const Criterion& criterion) {
+    const Threshold* const threshold = criterion.as_threshold();
+    return "threshold " + (threshold == nullptr ? "none" : all_digits(threshold->epsilon()));
+}
+
 template <class Real>
 std::string asked_for(std::span<const Level<Real>> levels, const Criterion& criterion,
                       const IsosurfaceOptions& options) {
     std::string asked = "isosurfaces of ";
     for (const Level<Real>& level : levels) asked += all_digits(level.value) + ", ";
-    const Threshold* const threshold = criterion.as_threshold();
-    asked += "threshold " + (threshold == nullptr ? "none" : all_digits(threshold->epsilon()));
+    asked += name_of(criterion);
     if (options.at_nodes) asked += ", with vertices at nodes";
     if (options.normals) asked += ", with normals";
     return asked + (options.cap ? ", with caps" : "");

@@ -48,8 +48,12 @@ std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
         if (!request.functions.empty()) {
             return engine::with_levels(hierarchy, request, options, count);
         }
-        return count(
-            engine::isosurface_levels(hierarchy, std::span<const double>(request.isovalues)));
+        engine::Levels<Real> levels{&hierarchy, {}};
+        engine::together(hierarchy.facts().shared, "a number of triangles", [&] {
+            levels =
+                engine::isosurface_levels(hierarchy, std::span<const double>(request.isovalues));
+        });
+        return count(levels);
     } catch (const engine::Cancelled&) {
         return std::nullopt;
     }

@@ -194,7 +194,8 @@ TEST(DistributedFaults, OneRankAsksForWhatIsRefused) {
     expect_all_say("normals", {.options = {.normals = true, .at_nodes = true}},
                    {"rank 2: a surface with normals and vertices at nodes is not made for "
                     "distributed grids"});
-    expect_all_say("budget", {.options = {.max_triangles = 9}}, {"rank 2: a number of triangles"});
+    expect_all_say("budget", {.options = {.max_triangles = 9}},
+                   {"all ranks must ask for the same", "rank 2 for a number of triangles"});
     expect_all_say(
         "another algorithm", {.draws_at_once = true},
         {"rank 0 asks for a preroll of offsets, factor 1, slope 0, and rank 2 for isosurfaces"});

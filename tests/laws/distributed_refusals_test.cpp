@@ -4,20 +4,17 @@
 // What is not made for distributed grids is refused, on all ranks, before they talk to each other;
 // docs/distributed.md lists the same.
 #include <nestgrid/algorithms/cell_data.hpp>
-#include <nestgrid/algorithms/count_triangles.hpp>
+#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/discontinuous_data.hpp>
 #include <nestgrid/algorithms/element_deviations.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/hanging_nodes.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/holes.hpp>
-#include <nestgrid/algorithms/isolines.hpp>
 #include <nestgrid/algorithms/node_levels.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/probe.hpp>
-#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
@@ -73,7 +70,6 @@ struct LeafValues {
 
 const std::vector<Refused<3>> in_space{
     {"normals", [](const auto& s) { s.draw({.normals = true, .at_nodes = true}); }},
-    {"number of triangles", [](const auto& s) { s.draw({.max_triangles = 100}); }},
     {"reference coordinates", [](const auto& s) { s.draw({.reference = true}); }},
     {"finest cuts", [](const auto& s) { s.draw({.cuts = Cuts::finest}); }},
     {"bounds of positions", [](const auto& s) { s.draw({.position_bounds = &s.indicator}); }},
@@ -99,10 +95,6 @@ const std::vector<Refused<3>> in_space{
          const auto all = s.hierarchy();
          const HiddenElements hidden(static_cast<const Hierarchy<double>&>(all));
      }},
-    {"probe",
-     [](const auto& s) {
-         probe_point(s.hierarchy(), Point{0.3, 0.4, 0.5});
-     }},
     {"cell averages",
      [](const auto& s) { CellAverages(s.grid, [](const CutGrid<3>::Element&) { return 1.0; }); }},
     {"discontinuous data",
@@ -111,16 +103,19 @@ const std::vector<Refused<3>> in_space{
          const DiscontinuousData data(s.grid, values);
          const ElementDeviations deviations(data);
      }},
-};
-
-const std::vector<Refused<2>> in_plane{
-    {"isolines", [](const auto& s) { isolines(s.grid, s.field, std::array{0.5}, s.indicator); }},
-    {"number of triangles of a graph",
+    {"discontinuous data at points",
      [](const auto& s) {
-         count_triangles(s.grid, s.field, Threshold(&s.indicator, 0.1), s.indicator, 100);
+         const LeafValues values;
+         probe(DiscontinuousData(s.grid, values), std::vector<Point>{{0.3, 0.4, 0.5}});
      }},
-    {"height field", [](const auto& s) { height_field(s.grid, s.field, 1.0, s.indicator); }},
-    {"shading", [](const auto& s) { shading(s.grid, s.field, s.indicator); }},
+    {"number of triangles after collapses",
+     [](const auto& s) {
+         const auto everywhere = [&](double threshold) {
+             return std::make_unique<const Threshold>(&s.indicator, threshold);
+         };
+         detail::find_collapse_error(s.hierarchy(), 0.5, everywhere, {s.indicator, 1.0}, 50, {},
+                                     SequentialExecutor{});
+     }},
 };
 
 /// \return what each of two ranks says
@@ -159,7 +154,6 @@ void expect_refused(const std::vector<Refused<dim>>& all, typename Family::Grid 
 
 TEST(DistributedRefusals, WhatIsNotMadeForRanksSaysSo) {
     expect_refused<3, UnbalancedOctree>(in_space, UnbalancedOctree::grids()[0]);
-    expect_refused<2, UnbalancedQuadtree>(in_plane, UnbalancedQuadtree::grids()[0]);
 }
 
 }  // namespace
