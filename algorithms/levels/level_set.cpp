@@ -191,10 +191,13 @@ void LevelSet<dimension, Real>::finish_first_walk() {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::agree(Ranks& ranks) {
-    for (LevelSurface<dimension>& surface : surfaces_) {
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        LevelSurface<dimension>& surface = surfaces_[i];
         double error = surface.error_bound();
         double off_level = surface.off_level();
-        double leaf_error = surface.leaf_error();
+        // What a criterion promises it knows of the nodes of this rank.
+        double leaf_error =
+            std::max(surface.leaf_error(), search_->surface_error(search_->levels()[i]));
         std::array<double*, 3> greatest{&error, &off_level, &leaf_error};
         take_greatest(ranks, greatest);
         surface.raise_error_bound(error);

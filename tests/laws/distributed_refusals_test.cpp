@@ -6,17 +6,12 @@
 #include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
-#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/discontinuous_data.hpp>
 #include <nestgrid/algorithms/element_deviations.hpp>
-#include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/hanging_nodes.hpp>
 #include <nestgrid/algorithms/holes.hpp>
-#include <nestgrid/algorithms/node_levels.hpp>
-#include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
-#include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "distributed_judge.hpp"
@@ -77,17 +72,7 @@ const std::vector<Refused<3>> in_space{
     {"other bounds", [](const auto& s) { s.draw(Exact(), Wide()); }},
     {"unsaturated criteria",
      [](const auto& s) { s.draw(Unsaturated{Threshold(&s.indicator, 0.1)}, s.indicator); }},
-    {"update",
-     [](const auto& s) {
-         s.indicator.update(s.grid, s.field, ChangedBox{{0, 0, 0}, {1, 1, 1}});
-     }},
-    {"visual indicator", [](const auto& s) { visual_indicator(s.grid, s.field); }},
-    {"numerical indicator", [](const auto& s) { numerical_indicator(s.grid, s.field); }},
     {"wavelet indicator", [](const auto& s) { wavelet_indicator(s.grid, s.field); }},
-    {"geometry indicator", [](const auto& s) { geometry_indicator(s.grid, s.field); }},
-    {"cut deviations",
-     [](const auto& s) { cut_deviations(s.grid, s.field, std::array{0.5}, s.indicator); }},
-    {"node levels", [](const auto& s) { NodeLevels{s.grid}; }},
     {"hanging nodes",
      [](const auto& s) { derive_hanging_nodes(erase(s.grid, ZeroField<Grid<3>>{})); }},
     {"holes",
