@@ -184,6 +184,7 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
                                    const MakeCriterion& criterion_at, const SearchBounds& bounds,
                                    std::uint64_t max_triangles, const IsosurfaceOptions& options,
                                    const Executor& executor) {
+    hierarchy.facts().require_one_process("a number of triangles after collapses");
     const IsosurfaceOptions of_trial = of_trials(options);
     const auto collapse_within = [&](double error, std::uint64_t& triangles) {
         Isosurface<3> result =

@@ -87,6 +87,7 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
                                    const Executor& executor) {
     const Surface<3>& whole = nearness.whole;
     const double distance = nearness.distance;
+    hierarchy.facts().require_one_process("an isosurface within a distance");
     nearness.require();
     IsosurfaceOptions searched = options;
     searched.normals = searched.cap = searched.elements = searched.reference = false;

@@ -19,7 +19,11 @@ std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
         } catch (const OverLimit&) {
             return std::nullopt;
         }
-        return drawing.triangles();
+        std::uint64_t triangles = drawing.triangles();
+        std::array<std::uint64_t*, 1> sum{&triangles};
+        if (const auto* shared = hierarchy.facts().shared) engine::take_sums(shared->ranks(), sum);
+        if (triangles > most) return std::nullopt;
+        return triangles;
     };
     return with_graph(hierarchy, 0, criterion, bounds, options, false, count);
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <graphs/drawn_graph.hpp>
 
+#include <ranks/agreement.hpp>
+
 namespace nestgrid::engine {
 
 void DrawnGraph::count_only(std::uint64_t most) {
@@ -18,6 +20,17 @@ void DrawnGraph::add(const DrawnGraph& task, const SurfacePart<3>& part) {
     if (!surface.counts_only()) surface.add_part(part);
 }
 
+void DrawnGraph::agree(Ranks& ranks) {
+    double error = surface.error_bound();
+    std::array<double*, 1> greatest{&error};
+    take_greatest(ranks, greatest);
+    surface.raise_error_bound(error);
+    std::uint64_t extracted = surface.extracted();
+    std::array<std::uint64_t*, 3> sums{&extracted, &counts.calls, &counts.visited};
+    take_sums(ranks, sums);
+    surface.add_extracted(extracted - surface.extracted());
+}
+
 void DrawnGraph::report(Shading& result) const {
     result.counts = counts;
     result.counts.extracted = surface.extracted();
@@ -26,6 +39,7 @@ void DrawnGraph::report(Shading& result) const {
     result.edge_nodes = nodes.size();
     result.edge_nodes_bytes = nodes.memory_bytes();
     result.table_bytes = surface.memory_bytes();
+    result.names = surface.vertex_names();
 }
 
 }  // namespace nestgrid::engine

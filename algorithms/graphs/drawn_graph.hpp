@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include <graphs/edge_nodes.hpp>
+#include <nestgrid/algorithms/ranks.hpp>
 #include <nestgrid/algorithms/shading_options.hpp>
 #include <surfaces/level_surface.hpp>
 #include <surfaces/simplex_tally.hpp>
@@ -26,6 +27,8 @@ struct DrawnGraph {
     /// \param part the surface that the task drew
     /// \throw OverLimit
     void add(const DrawnGraph& task, const SurfacePart<3>& part);
+    /// Takes the counts and bounds of all ranks together. Collective.
+    void agree(Ranks& ranks);
     /// Puts everything but the surface into a result.
     void report(Shading& result) const;
 };

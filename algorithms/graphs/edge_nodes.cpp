@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <nestgrid/error.hpp>
+#include <ranks/shared_nodes.hpp>
 
 namespace nestgrid::engine {
 
@@ -28,6 +29,24 @@ void EdgeNodes::add(EdgeNode node, std::span<const double> values) {
 
 void EdgeNodes::append(const EdgeNodes& task) {
     for (const EdgeNode& node : task.nodes_) add(node, task.values(node));
+}
+
+void EdgeNodes::exchange(const SharedNodes& shared) {
+    Outbox box(shared.ranks().size());
+    for (const EdgeNode& node : nodes_) {
+        shared.route(std::array{node.edge.low, node.edge.high}, box, [&](Bytes& out) {
+            put(out, node);
+            for (const double value : values(node)) put(out, value);
+        });
+    }
+    std::vector<double> at(components_);
+    shared.send(box, [&](int, Reader& in) {
+        while (in.more()) {
+            const auto node = in.get<EdgeNode>();
+            for (double& value : at) value = in.get<double>();
+            add(node, at);
+        }
+    });
 }
 
 void EdgeNodes::finish() {

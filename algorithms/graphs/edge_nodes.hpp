@@ -19,6 +19,8 @@
 
 namespace nestgrid::engine {
 
+class SharedNodes;
+
 /// A node inside an edge.
 struct EdgeNode {
     KeyPair edge;
@@ -39,6 +41,8 @@ public:
     void add(EdgeNode node, std::span<const double> values);
     /// Adds everything that a task recorded.
     void append(const EdgeNodes& task);
+    /// Tells the ranks that may have the edges, and takes what they tell. Collective.
+    void exchange(const SharedNodes& shared);
     /// Sorts the nodes, and drops those that were recorded twice.
     void finish();
 

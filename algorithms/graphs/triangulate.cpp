@@ -18,6 +18,8 @@ Shading draw(const Graph<Real>& graph, const ShadingOptions& options, const Exec
     } catch (const Cancelled&) {
         result.cancelled = true;
     }
+    const SharedNodes* const shared = graph.walk->hierarchy().facts().shared;
+    if (shared != nullptr) drawing.agree(shared->ranks());
     drawing.report(result);
     if (graph.criterion->insists()) result.error_bound = result.range_bound;
     return result;

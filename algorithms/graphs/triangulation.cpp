@@ -6,6 +6,7 @@
 #include <bit>
 
 #include <levels/error_bound.hpp>
+#include <ranks/agreement.hpp>
 #include <walk/walk_steps.hpp>
 
 namespace nestgrid::engine {
@@ -23,16 +24,21 @@ template <class Real>
 void Triangulation<Real>::run(const Executor& executor,
                               const std::function<bool(const TraversalCounts&)>& progress) {
     if (progress) progress_ = &progress;
+    const auto walk_alone = [&] { together(shared(), "triangles", [&] { walk(executor); }); };
+    if (shared() != nullptr && !drawn_.surface.counts_only()) {
+        drawn_.surface.keep_names(shared()->ranks().rank());
+    }
     if (graph_.stops_apart) {
         records_ = true;
-        walk(executor);
+        walk_alone();
         records_ = false;
         restart();
         drawn_.tally.begin_later();
+        if (shared() != nullptr) drawn_.nodes.exchange(*shared());
         drawn_.nodes.finish();
         if (!drawn_.nodes.empty()) nodes_ = &drawn_.nodes;
     }
-    walk(executor);
+    walk_alone();
 }
 
 /// Walks alone, or in tasks.
@@ -77,7 +83,8 @@ void Triangulation<Real>::count(std::uint64_t elements) {
 
 template <class Real>
 Decision Triangulation<Real>::inspect(const View& view, const Split& split) {
-    count(1);
+    counted_ = counted(view);
+    count(counted_);
     return look(view, split);
 }
 

@@ -35,17 +35,19 @@ template <class Real>
 class Triangulation final : public TaskVisitor<Real> {
 public:
     using View = ElementView<Real>;
-    static constexpr Needs needs{.positions = true, .closed = true};
+    static constexpr Needs needs{.positions = true, .closed = true, .on_ranks = true};
 
     Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder);
 
     /// Only counts triangles, to be called before run().
     /// \param most run() throws OverLimit where there are more
     void count_only(std::uint64_t most) { drawn_.count_only(most); }
-    /// Records and draws everything.
+    /// Records and draws everything. Collective where the grid is distributed.
     /// \param progress as in ShadingOptions
     /// \throw Cancelled where progress says so; OverLimit
     void run(const Executor& executor, const std::function<bool(const TraversalCounts&)>& progress);
+    /// Takes the counts and bounds of all ranks together, after run(). Collective.
+    void agree(Ranks& ranks) { drawn_.agree(ranks); }
     /// Puts everything but the surface into a result.
     void report(Shading& result) const;
     /// The number of triangles that were counted.
@@ -57,8 +59,8 @@ public:
     Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
     void extract(const View& view) override;
     void undo() override {
-        --drawn_.counts.calls;
-        --drawn_.counts.visited;
+        drawn_.counts.calls -= counted_;
+        drawn_.counts.visited -= counted_;
     }
     void restart() override { drawn_.counts = {}; }
 
@@ -68,6 +70,7 @@ private:
         std::unique_ptr<Triangulation> draws;
     };
 
+    const SharedNodes* shared() const { return graph_.walk->hierarchy().facts().shared; }
     void walk(const Executor& executor);
     std::unique_ptr<Task> begin_task() const;
     void count(std::uint64_t elements);
@@ -81,6 +84,7 @@ private:
     const EdgeNodes* nodes_ = nullptr;  // recorded by all tasks
     bool records_ = false;              // in the first walk
     double below_ = 0;                  // how far U may leave the corner values in an element
+    std::uint64_t counted_ = 1;         // by the last inspect()
     const std::function<bool(const TraversalCounts&)>* progress_ = nullptr;
 };
 

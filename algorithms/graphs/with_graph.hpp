@@ -5,11 +5,13 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include <graphs/triangulation.hpp>
 #include <levels/draw.hpp>
 #include <levels/level_search.hpp>
 #include <nestgrid/error.hpp>
+#include <projection/made_for_ranks.hpp>
 
 namespace nestgrid::engine {
 
@@ -21,6 +23,10 @@ void require_drawable(const Hierarchy<Real>& hierarchy, double scale, const Crit
     if (!std::isfinite(scale))
         throw InvalidInput("the scale of the heights is not a finite number");
     if (!(options.flatness >= 0)) throw InvalidInput("the flatness is negative or not a number");
+    if (hierarchy.facts().shared != nullptr) {
+        require_same_state(hierarchy);
+        require_drawn_on_ranks(criterion, bounds, {}, false);
+    }
     require_sound(hierarchy, criterion, bounds);
 }
 
@@ -30,9 +36,16 @@ void require_drawable(const Hierarchy<Real>& hierarchy, double scale, const Crit
 template <class Real, class Draw>
 auto with_graph(const Hierarchy<Real>& hierarchy, double scale, const Criterion& criterion,
                 const Bounds& bounds, const ShadingOptions& options, bool elements, Draw&& draw) {
-    require_drawable(hierarchy, scale, criterion, bounds, options);
-    const Walk<Real> walk(hierarchy, Triangulation<Real>::needs, bounds.hanging());
-    return draw(Graph<Real>{&walk,
+    std::optional<Walk<Real>> walk;
+    const auto asked = [&] {
+        return "triangles of height " + all_digits(scale) + ", flatness " +
+               all_digits(options.flatness) + ", " + name_of(criterion);
+    };
+    together(hierarchy.facts().shared, asked, [&] {
+        require_drawable(hierarchy, scale, criterion, bounds, options);
+        walk.emplace(hierarchy, Triangulation<Real>::needs, bounds.hanging());
+    });
+    return draw(Graph<Real>{&*walk,
                             &criterion,
                             &bounds,
                             {scale, options.flatness},

@@ -10,6 +10,8 @@
 #include <indicators/spread.hpp>
 #include <indicators/star_sweep.hpp>
 #include <indicators/walk_in_logs.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
 
 namespace nestgrid {
 
@@ -124,17 +126,31 @@ void walk_cuts(const Walk<Real>& walk, const CutWalk& what, CutEtas& etas,
     visitor.finish();
 }
 
+/// \throw InvalidInput, GridError where what is asked for is not sound
 template <class Real>
-SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& request,
-                            const Spread& spread, const Executor& executor) {
+void require_sound(const Hierarchy<Real>& hierarchy, const CutRequest& request,
+                   const Spread& spread) {
     require_spread(spread);
     for (const double isovalue : request.isovalues) {
         if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
     }
+    if (request.bounds->made_for(hierarchy.epoch())) return;
+    throw GridError("the grid has changed since its bounds were computed");
+}
+
+template <class Real>
+SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& request,
+                            const Spread& spread, const Executor& executor) {
     const HierarchyFacts& facts = hierarchy.facts();
-    if (!request.bounds->made_for(hierarchy.epoch())) {
-        throw GridError("the grid has changed since its bounds were computed");
-    }
+    const auto asked = [&] {
+        std::string text = request.distances ? "distances of cuts at " : "deviations of cuts at ";
+        for (const double isovalue : request.isovalues) text += all_digits(isovalue) + ", ";
+        return text + "factor " + all_digits(spread.factor) + ", slope " + all_digits(spread.slope);
+    };
+    together(facts.shared, asked, [&] {
+        if (facts.shared != nullptr) require_same_state(hierarchy);
+        require_sound(hierarchy, request, spread);
+    });
     // Distances keep no promise.
     const auto promised = request.distances ? std::span<const double>{} : request.isovalues;
     const bool in_rows = facts.knows_star_positions;
@@ -145,11 +161,14 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
         const bool measures = spread.slope > 0 && !in_rows;
         const Needs needs{.values = true,
                           .keys = true,
-                          .positions = measures || request.distances || !cuts_are_errors(facts)};
+                          .positions = measures || request.distances || !cuts_are_errors(facts),
+                          .on_ranks = true};
         CutEtas etas(facts.node_count);
-        walk_cuts(Walk<Real>(hierarchy, needs, request.bounds->hanging()),
-                  CutWalk{request, !in_rows, measures}, etas, executor);
-        table = in_rows ? etas.etas().take() : etas.etas().saturate(spread);
+        together(facts.shared, "deviations of cuts", [&] {
+            walk_cuts(Walk<Real>(hierarchy, needs, request.bounds->hanging()),
+                      CutWalk{request, !in_rows, measures}, etas, executor);
+        });
+        table = in_rows ? etas.etas().take() : etas.etas().saturate(spread, facts.shared);
     }
     if (in_rows) sweep_rows(hierarchy, spread, table.dense);
     return {std::move(table), spread, hierarchy.epoch(), promised};

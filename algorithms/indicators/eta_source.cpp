@@ -120,18 +120,17 @@ SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
     HangingNodes hanging;
     std::optional<Walk<Real>> walk_here;
     const auto asked = [&] {
-        return "an indicator of measures, factor " + all_digits(spread.factor) + ", slope " +
+        return source.name() + ", factor " + all_digits(spread.factor) + ", slope " +
                all_digits(spread.slope);
     };
-    if (!source.is_made_for_ranks()) hierarchy.facts().require_one_process("this indicator");
+    const bool on_ranks = !source.name().empty();
+    if (!on_ranks) hierarchy.facts().require_one_process("this indicator");
     together(shared, asked, [&] {
         require_spread(spread);
         if (shared != nullptr) require_same_state(hierarchy);
         hanging = find_hanging_nodes(hierarchy);
-        const Needs needs{.values = source.wants_values(),
-                          .keys = true,
-                          .positions = true,
-                          .on_ranks = source.is_made_for_ranks()};
+        const Needs needs{
+            .values = source.wants_values(), .keys = true, .positions = true, .on_ranks = on_ranks};
         walk_here.emplace(hierarchy, needs, &hanging);
     });
     const Walk<Real>& walk = *walk_here;
@@ -140,12 +139,11 @@ SweptIndicator sweep_source(const Hierarchy<Real>& hierarchy, EtaSource& source,
     const bool in_rows = hierarchy.facts().knows_star_positions;
     const Kept for_splits = spread.slope > 0 ? Kept::nodes_and_reach : Kept::nodes;
     SourceVisitor<Real> visitor(walk, source, in_rows ? Kept::nothing : for_splits, etas);
-    together(shared, "an indicator of measures", [&] {
-        with_places(hierarchy, [&] {
-            walk.run(visitor);
-            source.finish(etas);
-        });
-    });
+    together(shared, "an indicator of measures",
+             [&] { with_places(hierarchy, [&] { walk.run(visitor); }); });
+    if (shared != nullptr) source.agree(*shared, etas);
+    together(shared, "an indicator of measures",
+             [&] { with_places(hierarchy, [&] { source.finish(etas); }); });
     if (!in_rows) return {etas.saturate(spread, shared), spread, hierarchy.epoch()};
     auto table = etas.take();
     sweep_rows(hierarchy, spread, table.dense);

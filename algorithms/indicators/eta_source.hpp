@@ -61,9 +61,8 @@ double trace_of(double offset);
 /// Measures eta at the splits of a hierarchy. A source may keep numbers by node until finish().
 class EtaSource {
 public:
-    /// Whether eta of a node is the greatest that split() finds in any split that makes it, so that
-    /// ranks may find it together. Others are refused on distributed grids.
-    virtual bool is_made_for_ranks() const { return false; }
+    /// What it is, as ranks compare it. Sources without a name are refused on distributed grids.
+    virtual std::string name() const { return {}; }
     /// Whether the source looks at values.
     virtual bool wants_values() const { return true; }
     /// \param nodes numbers of the corners and, behind them, of the new nodes
@@ -72,6 +71,9 @@ public:
     /// Called behind split(), with the children of it that are leaves, one bit each.
     virtual void leaves(const MeasuredSplit& /*split*/, std::span<const std::size_t> /*nodes*/,
                         NodeMask /*which*/) {}
+    /// Called when all splits of this rank were shown: takes what other ranks have kept of nodes,
+    /// but for eta, of which the sweep takes the greatest. Collective.
+    virtual void agree(const SharedNodes& /*shared*/, NodeEtas& /*etas*/) {}
     /// Called when all splits were shown.
     virtual void finish(NodeEtas& /*etas*/) {}
 

@@ -71,7 +71,7 @@ void sweep(const SplitsByLevel& splits, bool once, const SweepSplit& sweep_split
 }
 
 /// One number per node of a hierarchy, and all splits, over which saturate() takes maxima.
-/// \tparam Number is ordered by <; where nodes are shared, no greater than 2^16 - 1, nor negative
+/// \tparam Number is ordered by <; where nodes are shared, an integer of 16 bits or fewer
 template <class Number>
 class NodeMaxima {
 public:
@@ -87,6 +87,12 @@ public:
     void find(std::span<const NodeKey> keys, std::span<std::size_t> out) {
         numbers_.find(keys, out);
         values_.resize(numbers_.count(), least_);
+    }
+    /// The number of one node.
+    std::size_t number(NodeKey key) {
+        std::size_t node = 0;
+        find(std::span(&key, 1), std::span(&node, 1));
+        return node;
     }
     Number& operator[](std::size_t node) { return values_[node]; }
     /// \param nodes numbers of the corners and, behind them, of the new nodes
@@ -107,6 +113,34 @@ public:
     void saturate(const Hand& hand, const SharedNodes* shared = nullptr) {
         sweep_all(hand);
         while (shared != nullptr && raise_across(*shared)) sweep_all(hand);
+    }
+
+    /// Raises shared nodes to the greatest numbers that any rank has for them. Collective.
+    /// \return whether some rank was told more than it knew
+    bool raise_across(const SharedNodes& shared) {
+        using Told = std::array<std::uint16_t, 1>;
+        return shared.raise<Told>([&](NodeKey key) { return Told{to_wire(at(key))}; },
+                                  [&](NodeKey key, const Told& told) {
+                                      Number& number = at(key);
+                                      const bool raises = to_wire(number) < told[0];
+                                      if (raises) number = from_wire(told[0]);
+                                      return raises;
+                                  });
+    }
+    /// Lowers shared nodes to the least numbers that were set on any rank. Collective.
+    void lower_across(const SharedNodes& shared) {
+        using Told = std::array<std::uint16_t, 1>;
+        const auto turned = [&](Number number) {
+            return number == least_ ? std::uint16_t{0}
+                                    : static_cast<std::uint16_t>(~to_wire(number));
+        };
+        shared.raise<Told>([&](NodeKey key) { return Told{turned(at(key))}; },
+                           [&](NodeKey key, const Told& told) {
+                               Number& number = at(key);
+                               const bool lowers = turned(number) < told[0];
+                               if (lowers) number = from_wire(static_cast<std::uint16_t>(~told[0]));
+                               return lowers;
+                           });
     }
 
     const SplitsByLevel& splits() const { return splits_; }
@@ -145,24 +179,13 @@ private:
         });
     }
 
-    /// Raises shared nodes to the greatest numbers that any rank has for them.
-    /// \return whether some rank was told more than it knew
-    bool raise_across(const SharedNodes& shared) {
-        const auto at = [&](NodeKey key) -> Number& {
-            std::size_t node = 0;
-            find(std::span(&key, 1), std::span(&node, 1));
-            return values_[node];
-        };
-        using Told = std::array<std::uint16_t, 1>;
-        return shared.raise<1>(
-            [&](NodeKey key) { return Told{static_cast<std::uint16_t>(at(key))}; },
-            [&](NodeKey key, const Told& told) {
-                Number& number = at(key);
-                const bool raises = number < told[0];
-                if (raises) number = static_cast<Number>(told[0]);
-                return raises;
-            });
+    Number& at(NodeKey key) { return values_[number(key)]; }
+    // A number with its order, without a sign.
+    static constexpr std::uint16_t sign_ = std::is_signed_v<Number> ? 0x8000U : 0U;
+    static std::uint16_t to_wire(Number number) {
+        return static_cast<std::uint16_t>(static_cast<std::uint16_t>(number) ^ sign_);
     }
+    static Number from_wire(std::uint16_t bits) { return static_cast<Number>(bits ^ sign_); }
 
     NodeNumbers numbers_;
     std::vector<Number> values_;

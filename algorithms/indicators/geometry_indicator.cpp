@@ -22,6 +22,7 @@ double distance_to_mean(const MeasuredSplit& split, std::size_t n) {
 
 class PositionSource final : public engine::EtaSource {
 public:
+    std::string name() const override { return "the geometry indicator"; }
     bool wants_values() const override { return false; }
     void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                engine::NodeEtas& etas) override {

@@ -179,11 +179,21 @@ template <class Real>
 void HierarchicalIndicator::update_dirty(const Hierarchy<Real>& hierarchy,
                                          const ChangedPlaces& changed,
                                          const LeafErrors& leaf_errors) {
-    if (own_errors_ != static_cast<bool>(leaf_errors)) {
+    const engine::SharedNodes* const shared = hierarchy.facts().shared;
+    engine::together(shared, "an update of an indicator", [&] {
+        if (own_errors_ == static_cast<bool>(leaf_errors)) return;
         throw InvalidInput(own_errors_
                                ? "an indicator made of errors of leaves is updated with them"
                                : "an indicator made of offsets is updated without errors of "
                                  "leaves");
+    });
+    if (shared != nullptr && error_ != NodeError::deviation) {
+        // A node of this rank that has not changed may have been on another rank before.
+        HierarchicalIndicator anew(hierarchy, leaf_errors, SequentialExecutor{}, spread_);
+        anew.facts_.add(facts_);
+        anew.facts_.least_stop = 0;
+        *this = std::move(anew);
+        return;
     }
     if (error_ == NodeError::deviation) {
         *this = HierarchicalIndicator(hierarchy, error_, SequentialExecutor{}, spread_);

@@ -13,7 +13,7 @@ namespace {
 /// The diameters of split elements, at their new nodes.
 class DiameterSource final : public engine::EtaSource {
 public:
-    bool is_made_for_ranks() const override { return true; }
+    std::string name() const override { return "mesh sizes"; }
     bool wants_values() const override { return false; }
     void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                engine::NodeEtas& etas) override {

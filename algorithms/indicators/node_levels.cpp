@@ -6,6 +6,8 @@
 #include <limits>
 
 #include <indicators/fine_to_coarse.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
 #include <walk/for_each_element.hpp>
 #include <walk/hanging_nodes.hpp>
 
@@ -46,13 +48,20 @@ NodeLevels::NodeLevels(const Hierarchy<float>& hierarchy) : epoch_{hierarchy.epo
     if (hierarchy.offers(Feature::hanging_parents)) {
         hanging = engine::derive_hanging_nodes(hierarchy);
     }
-    const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true}, &hanging);
+    const engine::SharedNodes* const shared = hierarchy.facts().shared;
     Heights heights(hierarchy.facts().node_count, unknown);
-    engine::for_each_element(
-        walk, true, [&](const engine::ElementView<float>& view, const engine::Split& split) {
-            add_element(walk, view, split, heights);
-        });
-    heights.saturate();
+    engine::together(shared, "levels of nodes", [&] {
+        if (shared != nullptr) engine::require_same_state(hierarchy);
+        const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true, .on_ranks = true},
+                                       &hanging);
+        engine::for_each_element(
+            walk, true, [&](const engine::ElementView<float>& view, const engine::Split& split) {
+                add_element(walk, view, split, heights);
+            });
+    });
+    // No node is outside on distributed grids, which have no elements outside.
+    if (shared != nullptr) heights.lower_across(*shared);
+    heights.saturate(shared);
     heights_ = heights.take_table();
     std::ranges::replace(heights_.dense, unknown, std::int16_t{0});
 }

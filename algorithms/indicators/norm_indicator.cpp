@@ -33,7 +33,7 @@ public:
         }
     }
 
-    bool is_made_for_ranks() const override { return true; }
+    std::string name() const override { return "norms of offsets"; }
     void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                NodeEtas& etas) override {
         const auto made = nodes.subspan(split.corner_count());

@@ -3,6 +3,7 @@
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <unordered_map>
 #include <vector>
@@ -65,6 +66,24 @@ std::vector<Slope> slopes_at(Shape shape, const Point& s) {
 struct Jump {
     VectorBox gradients;
     float diameter = 0;
+
+    /// As those of a box, and the diameter, which is not negative.
+    using Numbers = std::array<std::uint32_t, 7>;
+    Numbers numbers() const {
+        const VectorBox::Numbers box = gradients.numbers();
+        Numbers all{};
+        std::copy(box.begin(), box.end(), all.begin());
+        all.back() = std::bit_cast<std::uint32_t>(diameter);
+        return all;
+    }
+    bool raise(const Numbers& other) {
+        VectorBox::Numbers box;
+        std::copy_n(other.begin(), box.size(), box.begin());
+        const auto told = std::bit_cast<float>(other.back());
+        const bool longer = diameter < told;
+        diameter = std::max(diameter, told);
+        return gradients.raise(box) || longer;
+    }
 };
 
 /// Gradients at the new nodes of a split, several at once. On a simplex there is one.
@@ -108,6 +127,17 @@ constexpr std::size_t most_lanes = 8;
 
 class JumpSource final : public EtaSource {
 public:
+    std::string name() const override { return "the numerical indicator"; }
+    void agree(const SharedNodes& shared, NodeEtas& etas) override {
+        const auto jump = [&](NodeKey key) -> Jump& {
+            const std::size_t node = etas.maxima().number(key);
+            if (node >= jumps_.size()) jumps_.resize(node + 1);
+            return jumps_[node];
+        };
+        shared.raise<Jump::Numbers>(
+            [&](NodeKey key) { return jump(key).numbers(); },
+            [&](NodeKey key, const Jump::Numbers& told) { return jump(key).raise(told); });
+    }
     void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                NodeEtas& etas) override {
         const Rule& rule = split.rule;

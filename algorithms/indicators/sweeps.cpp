@@ -45,12 +45,13 @@ bool Sweeps::raise_across(const SharedNodes& shared) {
     const auto bound = [&](Node& node) -> std::uint16_t& {
         return made_of_ == MadeOf::deviations ? node.entry.bound : node.finer;
     };
-    return shared.raise<2>(
+    using Told = std::array<std::uint16_t, 2>;
+    return shared.raise<Told>(
         [&](NodeKey key) {
             Node& node = at(key);
-            return std::array<std::uint16_t, 2>{node.entry.stop, bound(node)};
+            return Told{node.entry.stop, bound(node)};
         },
-        [&](NodeKey key, const std::array<std::uint16_t, 2>& told) {
+        [&](NodeKey key, const Told& told) {
             Node& node = at(key);
             const bool raises = node.entry.stop < told[0] || bound(node) < told[1];
             node.entry.stop = std::max(node.entry.stop, told[0]);

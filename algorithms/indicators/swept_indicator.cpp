@@ -50,7 +50,7 @@ class MeasureSource final : public engine::EtaSource {
 public:
     explicit MeasureSource(const Measure& measure) : measure_{&measure} {}
 
-    bool is_made_for_ranks() const override { return true; }
+    std::string name() const override { return "an indicator of measures"; }
     void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                engine::NodeEtas& etas) override {
         const auto made = nodes.subspan(split.corner_count());

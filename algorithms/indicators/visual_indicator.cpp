@@ -9,6 +9,7 @@
 #include <indicators/eta_source.hpp>
 #include <indicators/normal_lanes.hpp>
 #include <nestgrid/error.hpp>
+#include <ranks/agreement.hpp>
 #include <walk/hanging_nodes.hpp>
 #include <walk/walk.hpp>
 
@@ -21,7 +22,21 @@ namespace {
 /// Boxes of the normals around each node.
 class NormalSource final : public EtaSource {
 public:
-    explicit NormalSource(double tau) : two_{tau}, eight_{tau} {}
+    explicit NormalSource(double tau) : tau_{tau}, two_{tau}, eight_{tau} {}
+
+    std::string name() const override {
+        return "the visual indicator with tau " + all_digits(tau_);
+    }
+    void agree(const SharedNodes& shared, NodeEtas& etas) override {
+        const auto box = [&](NodeKey key) -> VectorBox& {
+            const std::size_t node = etas.maxima().number(key);
+            if (node >= boxes_.size()) boxes_.resize(node + 1);
+            return boxes_[node];
+        };
+        shared.raise<VectorBox::Numbers>(
+            [&](NodeKey key) { return box(key).numbers(); },
+            [&](NodeKey key, const VectorBox::Numbers& told) { return box(key).raise(told); });
+    }
 
     void split(const MeasuredSplit& split, std::span<const std::size_t> nodes,
                NodeEtas& etas) override {
@@ -43,6 +58,7 @@ public:
     }
 
 private:
+    double tau_;
     std::vector<VectorBox> boxes_;
     NormalLanes<2> two_;
     NormalLanes<8> eight_;
@@ -57,6 +73,15 @@ public:
     explicit RangeVisitor(std::size_t components) : components_{components} {}
 
     Real range() const { return least_ < greatest_ ? greatest_ - least_ : 0; }
+    /// Takes the values of all ranks. Collective.
+    void agree(Ranks& ranks) {
+        double least = -static_cast<double>(least_);
+        auto greatest = static_cast<double>(greatest_);
+        std::array<double*, 2> all{&least, &greatest};
+        take_greatest(ranks, all);
+        least_ = static_cast<Real>(-least);
+        greatest_ = static_cast<Real>(greatest);
+    }
 
     /// \param value component 0 of the first node, and then every component
     void add(const Real* value, std::size_t nodes) {
@@ -96,19 +121,28 @@ double default_tau(const Hierarchy<Real>& hierarchy) {
             visitor.add(values.data(), row.count);
         });
     } else {
-        const HangingNodes hanging = find_hanging_nodes(hierarchy);
-        const Walk<Real> walk(hierarchy, {.keys = !hanging.empty()}, &hanging);
-        walk.run(visitor);
+        together(facts.shared, "the range of the data", [&] {
+            const HangingNodes hanging = find_hanging_nodes(hierarchy);
+            const bool keys = !hanging.empty() || facts.shared != nullptr;
+            const Walk<Real> walk(hierarchy, {.keys = keys, .on_ranks = true}, &hanging);
+            walk.run(visitor);
+        });
+        if (facts.shared != nullptr) visitor.agree(facts.shared->ranks());
     }
     return 0x1p-20 * static_cast<double>(visitor.range());
 }
 
 template <class Real>
 SweptIndicator sweep_normals(const Hierarchy<Real>& hierarchy, const VisualOptions& options) {
-    if (options.tau && !(*options.tau >= 0 && std::isfinite(*options.tau))) {
+    const auto asked = [&] {
+        return options.tau ? "the visual indicator with tau " + all_digits(*options.tau)
+                           : std::string("the visual indicator");
+    };
+    together(hierarchy.facts().shared, asked, [&] {
+        if (!options.tau || (*options.tau >= 0 && std::isfinite(*options.tau))) return;
         throw InvalidInput("tau is a finite difference of data that is not negative, not " +
                            std::to_string(*options.tau));
-    }
+    });
     NormalSource source(options.tau ? *options.tau : default_tau(hierarchy));
     return sweep_source(hierarchy, source, options.spread);
 }

@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <optional>
-
 #include <levels/draw.hpp>
 #include <nestgrid/error.hpp>
-#include <projection/made_for_ranks.hpp>
 #include <ranks/agreement.hpp>
 
 namespace nestgrid {
@@ -18,20 +15,21 @@ template <int dimension, class Real>
 TriangleBudget find_threshold(const Levels<Real>& levels, const MakeCriterion& criterion_at,
                               const SearchBounds& bounds, std::uint64_t max_triangles,
                               const IsosurfaceOptions& options, const Executor& executor) {
-    levels.hierarchy->facts().require_one_process("a number of triangles");
-    return least_threshold(
-        [&](double threshold, std::uint64_t most) {
-            return count_simplices<dimension>(levels, *criterion_at(threshold), bounds.bounds, most,
-                                              options, executor);
-        },
-        bounds.range, max_triangles);
+    const auto count = [&](double threshold, std::uint64_t most) {
+        std::unique_ptr<const Criterion> criterion;
+        together(levels.hierarchy->facts().shared, "a number of triangles",
+                 [&] { criterion = criterion_at(threshold); });
+        return count_simplices<dimension>(levels, *criterion, bounds.bounds, most, options,
+                                          executor);
+    };
+    return least_threshold(count, bounds.range, max_triangles);
 }
 
 template <int dimension, class Real>
 Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator& indicator,
                         const Projection& projection, const IsosurfaceOptions& options,
                         const Executor& executor) {
-    projection.check();
+    together(levels.hierarchy->facts().shared, "isosurfaces", [&] { projection.check(); });
     if (projection.max_triangles == 0) return {&indicator, projection.least_threshold()};
     const MakeCriterion everywhere = [&](double threshold) {
         return std::make_unique<const Threshold>(&indicator, threshold);
@@ -51,7 +49,10 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
                               const MakeCriterion& criterion_at, const SearchBounds& bounds,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options,
                               const Executor& executor) {
-    const auto levels = engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
+    engine::Levels<Real> levels{&hierarchy, {}};
+    engine::together(hierarchy.facts().shared, "a number of triangles", [&] {
+        levels = engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
+    });
     return engine::find_threshold<dimension>(levels, criterion_at, bounds, max_triangles, options,
                                              executor);
 }

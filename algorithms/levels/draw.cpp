@@ -83,28 +83,77 @@ void require_sound(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
     require_saturated(criterion, bounds, hierarchy.facts().decodes);
 }
 
+namespace {
+
+/// Tells functions of position apart by their values at one point.
+template <class Real>
+std::string of_functions(const Levels<Real>& levels) {
+    if (levels.functions == nullptr || levels.hierarchy->coarse_count() == 0) return {};
+    Coarse coarse;
+    Family family;
+    levels.hierarchy->coarse(levels.hierarchy->open().get(), 0, coarse, family);
+    std::string text;
+    for (std::size_t i = 0; i < levels.functions->count(); ++i) {
+        text += "a slice by a function with the value " +
+                all_digits(levels.functions->template at<double>(i, coarse.corners[0])) + " at " +
+                text_of(coarse.corners[0]) + ", ";
+    }
+    return text;
+}
+
+}  // namespace
+
+template <class Real>
+std::string asked_for(const Levels<Real>& levels, const Criterion& criterion,
+                      const IsosurfaceOptions& options) {
+    return of_functions(levels) + asked_for<Real>(levels.levels, criterion, options);
+}
+
+template <int dimension, class Real>
+void require_drawable(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
+                      const Bounds& bounds, const IsosurfaceOptions& options) {
+    if (hierarchy.facts().shared != nullptr) {
+        require_same_state(hierarchy);
+        require_drawn_on_ranks(criterion, bounds, options, hierarchy.offers(Feature::gradients));
+    }
+    require_sound(hierarchy, criterion, bounds);
+    require_options<dimension>(options);
+}
+
 template <int dimension, class Real>
 std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const Criterion& criterion,
                                              const Bounds& bounds, std::uint64_t most,
                                              const IsosurfaceOptions& options,
                                              const Executor& executor) {
     using Drawing = LevelSet<dimension, Real>;
-    require_sound(*levels.hierarchy, criterion, bounds);
+    const SharedNodes* const shared = levels.hierarchy->facts().shared;
     IsosurfaceOptions plain;
     plain.cap = options.cap;
     plain.progress = options.progress;
-    const Walk<Real> walk(*levels.hierarchy, Drawing::needs, bounds.hanging(), levels.functions);
-    const LevelSearch<Real> search(walk, levels.levels, criterion, bounds);
+    std::optional<Walk<Real>> walk;
+    const auto asked = [&] {
+        return "at most " + std::to_string(most) + " simplices, " +
+               asked_for(levels, criterion, plain);
+    };
+    together(shared, asked, [&] {
+        require_drawable<dimension>(*levels.hierarchy, criterion, bounds, plain);
+        walk.emplace(*levels.hierarchy, Drawing::needs, bounds.hanging(), levels.functions);
+    });
+    const LevelSearch<Real> search(*walk, levels.levels, criterion, bounds);
     Surface<dimension> nothing;
     const std::vector<typename Drawing::Builder> builders(levels.levels.size(), {nothing, false});
-    Drawing drawing(walk, search, builders, plain, levels.first_attribute);
+    Drawing drawing(*walk, search, builders, plain, levels.first_attribute);
     drawing.count_only(most);
     try {
         drawing.run(executor);
     } catch (const OverLimit&) {
         return std::nullopt;
     }
-    return drawing.simplices();
+    std::uint64_t count = drawing.simplices();
+    std::array<std::uint64_t*, 1> sum{&count};
+    if (shared != nullptr) take_sums(shared->ranks(), sum);
+    if (count > most) return std::nullopt;
+    return count;
 }
 
 namespace {
@@ -163,26 +212,6 @@ void hand_over(const Targets<dimension>& targets, std::vector<Surface<dimension>
 
 }  // namespace
 
-namespace {
-
-/// Tells functions of position apart by their values at one point.
-template <class Real>
-std::string of_functions(const Levels<Real>& levels) {
-    if (levels.functions == nullptr || levels.hierarchy->coarse_count() == 0) return {};
-    Coarse coarse;
-    Family family;
-    levels.hierarchy->coarse(levels.hierarchy->open().get(), 0, coarse, family);
-    std::string text;
-    for (std::size_t i = 0; i < levels.functions->count(); ++i) {
-        text += "a slice by a function with the value " +
-                all_digits(levels.functions->template at<double>(i, coarse.corners[0])) + " at " +
-                text_of(coarse.corners[0]) + ", ";
-    }
-    return text;
-}
-
-}  // namespace
-
 template <int dimension, class Real>
 std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
                                                const Targets<dimension>& targets,
@@ -192,33 +221,20 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     using Drawing = LevelSet<dimension, Real>;
     const std::size_t count = levels.levels.size();
     const SharedNodes* const shared = levels.hierarchy->facts().shared;
-    std::optional<Walk<Real>> walk_here;
-    const auto asked = [&] {
-        return of_functions(levels) + asked_for<Real>(levels.levels, criterion, options);
-    };
-    together(shared, asked, [&] {
-        if (shared != nullptr) {
-            require_same_state(*levels.hierarchy);
-            require_drawn_on_ranks(criterion, bounds, options,
-                                   levels.hierarchy->offers(Feature::gradients));
-        }
-        require_sound(*levels.hierarchy, criterion, bounds);
-        require_options<dimension>(options);
-        require_targets(targets, count, options);
-        Needs needs = Drawing::needs;
-        needs.on_ranks = true;
-        walk_here.emplace(*levels.hierarchy, needs, bounds.hanging(), levels.functions);
-    });
-    const Walk<Real>& walk = *walk_here;
+    std::optional<Walk<Real>> walk;
+    together(
+        shared, [&] { return asked_for(levels, criterion, options); },
+        [&] {
+            require_drawable<dimension>(*levels.hierarchy, criterion, bounds, options);
+            require_targets(targets, count, options);
+            walk.emplace(*levels.hierarchy, Drawing::needs, bounds.hanging(), levels.functions);
+        });
     std::vector<Surface<dimension>> chunks(count);
     for (Surface<dimension>& chunk : chunks) chunk.elements = levels.hierarchy->make_elements();
     const auto builders = make_builders(targets, chunks, options);
-    const LevelSearch<Real> search(walk, levels.levels, criterion, bounds);
-    Drawing drawing(walk, search, builders, options, levels.first_attribute);
-    const bool cancelled = run_until_cancelled(drawing, executor);
-    // Of a walk that went to its end, nothing is left to flush.
-    together(cancelled ? shared : nullptr, "isosurfaces", [&] { drawing.flush(); });
-    if (shared != nullptr) drawing.agree(shared->ranks());
+    const LevelSearch<Real> search(*walk, levels.levels, criterion, bounds);
+    Drawing drawing(*walk, search, builders, options, levels.first_attribute);
+    const bool cancelled = run_until_cancelled(drawing, executor, shared);
     std::vector<Isosurface<dimension>> results(count);
     for (std::size_t i = 0; i < count; ++i) {
         drawing.report(i, results[i]);
@@ -252,6 +268,8 @@ std::vector<Isosurface<dimension>> isosurfaces(const Hierarchy<Real>& hierarchy,
 }  // namespace engine
 
 #define NESTGRID_INSTANTIATE(dimension, Real)                                                      \
+    template void engine::require_drawable<dimension>(const Hierarchy<Real>&, const Criterion&,    \
+                                                      const Bounds&, const IsosurfaceOptions&);    \
     template std::optional<std::uint64_t> engine::count_simplices<dimension>(                      \
         const engine::Levels<Real>&, const Criterion&, const Bounds&, std::uint64_t,               \
         const IsosurfaceOptions&, const Executor&);                                                \
@@ -273,6 +291,10 @@ template void engine::require_same_epoch(const Hierarchy<float>&, const Bounds&)
 template void engine::require_same_epoch(const Hierarchy<double>&, const Bounds&);
 template void engine::require_sound(const Hierarchy<float>&, const Criterion&, const Bounds&);
 template void engine::require_sound(const Hierarchy<double>&, const Criterion&, const Bounds&);
+template std::string engine::asked_for(const engine::Levels<float>&, const Criterion&,
+                                       const IsosurfaceOptions&);
+template std::string engine::asked_for(const engine::Levels<double>&, const Criterion&,
+                                       const IsosurfaceOptions&);
 template void engine::set_isovalues(engine::Levels<float>&, std::span<const double>);
 template void engine::set_isovalues(engine::Levels<double>&, std::span<const double>);
 template engine::Levels<float> engine::isosurface_levels(const Hierarchy<float>&,

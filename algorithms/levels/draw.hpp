@@ -10,6 +10,7 @@
 #include <nestgrid/algorithms/detail/surface_targets.hpp>
 #include <nestgrid/algorithms/projection.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
+#include <ranks/agreement.hpp>
 
 namespace nestgrid::engine {
 
@@ -40,15 +41,21 @@ std::vector<Isosurface<dimension>> draw_levels(
     const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
     const Executor& executor);
 
-/// Runs a drawing. \return whether options.progress cancelled it
+/// Runs a drawing, and takes its counts and bounds of all ranks together.
+/// \param shared the nodes that other ranks have, too, or null
+/// \return whether options.progress cancelled it
 template <class Drawing>
-bool run_until_cancelled(Drawing& drawing, const Executor& executor) {
+bool run_until_cancelled(Drawing& drawing, const Executor& executor, const SharedNodes* shared) {
+    bool cancelled = false;
     try {
         drawing.run(executor);
-        return false;
     } catch (const Cancelled&) {
-        return true;
+        cancelled = true;
     }
+    // Of a walk that went to its end, nothing is left to flush.
+    if (cancelled) together(shared, "isosurfaces", [&] { drawing.flush(); });
+    if (shared != nullptr) drawing.agree(shared->ranks());
+    return cancelled;
 }
 
 /// \throw InvalidInput where vertices at nodes are asked for together with what excludes them
@@ -68,6 +75,17 @@ void require_same_epoch(const Hierarchy<Real>& hierarchy, const Bounds& bounds);
 template <class Real>
 void require_sound(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
                    const Bounds& bounds);
+
+/// The same, and what the options and distributed grids require.
+/// \throw GridError, InvalidInput
+template <int dimension, class Real>
+void require_drawable(const Hierarchy<Real>& hierarchy, const Criterion& criterion,
+                      const Bounds& bounds, const IsosurfaceOptions& options);
+
+/// What ranks compare before they draw levels.
+template <class Real>
+std::string asked_for(const Levels<Real>& levels, const Criterion& criterion,
+                      const IsosurfaceOptions& options);
 
 /// The number of triangles (segments) of all levels under a criterion, or nothing where there are
 /// more than `most`.

@@ -2,19 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <projection/by_criterion.hpp>
 
+#include <ranks/agreement.hpp>
+#include <ranks/join_lines.hpp>
+
 namespace nestgrid::engine {
 
 template <class Real>
 Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> values,
                   const Criterion& criterion, const Bounds& bounds,
                   const IsosurfaceOptions& options, const Executor& executor) {
-    hierarchy.facts().require_one_process("a list of isolines");
+    const engine::SharedNodes* const shared = hierarchy.facts().shared;
     IsosurfaceOptions kept = options;
     kept.normals = kept.elements = kept.reference = false;
     auto drawn = isosurfaces<2>(hierarchy, values, {}, criterion, bounds, kept, executor);
     Isolines result;
     for (std::size_t i = 0; i < drawn.size(); ++i) {
-        append_polylines(result.lines, drawn[i].surface, values[i]);
+        if (shared != nullptr) engine::join_lines(drawn[i].surface, drawn[i].names, *shared);
+        engine::together(shared, "isolines",
+                         [&] { append_polylines(result.lines, drawn[i].surface, values[i]); });
         drawn[i].surface = {};  // its memory is needed for the lines
         result.counts.calls = drawn[i].counts.calls;
         result.counts.visited = drawn[i].counts.visited;

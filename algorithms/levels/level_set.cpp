@@ -191,23 +191,25 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::agree(Ranks& ranks) {
-    for (LevelSurface<dimension>& surface : surfaces_) {
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        LevelSurface<dimension>& surface = surfaces_[i];
         double error = surface.error_bound();
         double off_level = surface.off_level();
-        double leaf_error = surface.leaf_error();
+        // What a criterion promises it knows of the nodes of this rank.
+        double leaf_error =
+            std::max(surface.leaf_error(), search_->surface_error(search_->levels()[i]));
         std::array<double*, 3> greatest{&error, &off_level, &leaf_error};
         take_greatest(ranks, greatest);
         surface.raise_error_bound(error);
         surface.raise_off_level(off_level);
         surface.raise_leaf_error(leaf_error);
         std::uint64_t extracted = surface.extracted();
-        ranks.reduce(std::span(&extracted, 1), Ranks::Reduction::sum);
+        std::array<std::uint64_t*, 1> sum{&extracted};
+        take_sums(ranks, sum);
         surface.add_extracted(extracted - surface.extracted());
     }
-    std::array<std::uint64_t, 2> sums{counts_.calls, counts_.visited};
-    ranks.reduce(sums, Ranks::Reduction::sum);
-    counts_.calls = sums[0];
-    counts_.visited = sums[1];
+    std::array<std::uint64_t*, 2> sums{&counts_.calls, &counts_.visited};
+    take_sums(ranks, sums);
 }
 
 template <int dimension, class Real>
@@ -250,8 +252,7 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
 
 template <int dimension, class Real>
 NESTGRID_INLINE Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
-    // Ranks that have parts of one element all visit it; that with its first leaf counts it.
-    counted_ = view.member->presence == Presence::partly ? 0 : 1;
+    counted_ = counted(view);
     counts_.calls += counted_;
     if ((counts_.calls & 0xFFFFU) == 0) report_progress(0, 0);
     const Decision decision = look(view, split);

@@ -24,7 +24,8 @@ public:
     using View = ElementView<Real>;
     using Builder = SurfaceBuilder<dimension>;
     /// What the walk must carry.
-    static constexpr Needs needs{.values = true, .keys = true, .positions = true, .closed = true};
+    static constexpr Needs needs{
+        .values = true, .keys = true, .positions = true, .closed = true, .on_ranks = true};
 
     /// All arguments are borrowed but the builders, which are copied, one for each level.
     /// \param first_attribute the first of the components that vertices carry

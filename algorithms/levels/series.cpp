@@ -25,15 +25,22 @@ public:
                                       const Projection& projection,
                                       const IsosurfaceOptions& options,
                                       const Executor& executor) override {
-        if (projection.criterion || !projection.asks_for_offsets()) {
-            throw InvalidInput(
-                "a series draws offsets within a threshold or a number of triangles only");
-        }
-        engine::require_same_epoch(*hierarchy_, indicator);
-        engine::require_options<dimension>(options);
-        engine::set_isovalues(levels_, std::span<const double>(&isovalue, 1));
+        const engine::SharedNodes* const shared = hierarchy_->facts().shared;
+        engine::together(shared, "a series of isosurfaces", [&] {
+            if (projection.criterion || !projection.asks_for_offsets()) {
+                throw InvalidInput(
+                    "a series draws offsets within a threshold or a number of triangles only");
+            }
+            engine::require_same_epoch(*hierarchy_, indicator);
+            engine::set_isovalues(levels_, std::span<const double>(&isovalue, 1));
+        });
         criterion_ =
             engine::criterion_for<dimension>(levels_, indicator, projection, options, executor);
+        engine::together(
+            shared, [&] { return engine::asked_for(levels_, criterion_, options); },
+            [&] {
+                engine::require_drawable<dimension>(*hierarchy_, criterion_, indicator, options);
+            });
         search_.emplace(walk_, levels_.levels, criterion_, indicator);
         options_ = options;
         result_.surface.clear();
@@ -45,7 +52,7 @@ public:
             drawing_ = std::make_unique<Drawing>(walk_, *search_, builders, options_,
                                                  levels_.first_attribute);
         }
-        result_.cancelled = engine::run_until_cancelled(*drawing_, executor);
+        result_.cancelled = engine::run_until_cancelled(*drawing_, executor, shared);
         drawing_->report(0, result_);
         return result_;
     }

@@ -6,6 +6,7 @@
 
 #include <nestgrid/detail/shape_functions.hpp>
 #include <probes/inverse_map.hpp>
+#include <ranks/agreement.hpp>
 
 namespace nestgrid::engine {
 
@@ -81,10 +82,10 @@ void BoxDescent<Real>::run(std::span<const std::uint32_t> which) {
 
 template <class Real>
 Decision BoxDescent<Real>::inspect(const View& view, const Split& split) {
-    ++found_->counts().calls;
+    found_->counts().calls += counted(view);
     arrive(view);
     if (group_on(view.level).empty()) return {Visit::skip};
-    ++found_->counts().visited;
+    found_->counts().visited += counted(view);
     if (split.rule == nullptr) return {Visit::stop};
     return question_.ask(*walk_, *criterion_, view, split);
 }

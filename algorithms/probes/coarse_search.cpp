@@ -71,7 +71,8 @@ void for_each_point_in(const PointBins& bins, const InverseMap& inverse, Functio
     });
 }
 
-/// Calls function(i, coarse) for the coarse elements that are shown, at least in part.
+/// Calls function(i, coarse) for the coarse elements that are shown, at least in part, here or on
+/// other ranks.
 template <class Real, class Function>
 void for_each_shown(const Hierarchy<Real>& hierarchy, Function&& function) {
     const std::unique_ptr<Task> task = hierarchy.open();
@@ -79,7 +80,10 @@ void for_each_shown(const Hierarchy<Real>& hierarchy, Function&& function) {
     Family family;
     for (std::size_t i = 0; i < hierarchy.coarse_count(); ++i) {
         hierarchy.coarse(task.get(), i, coarse, family);
-        if (((family.split | family.leaves) & ~family.hidden) != 0) function(i, coarse);
+        const bool elsewhere = family.members[0].presence == Presence::elsewhere;
+        if (elsewhere || ((family.split | family.leaves) & ~family.hidden) != 0) {
+            function(i, coarse);
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <nestgrid/detail/shape_functions.hpp>
+#include <ranks/agreement.hpp>
 
 namespace nestgrid::engine {
 
@@ -30,10 +31,10 @@ void Descent<Real>::run(Group found) {
 
 template <class Real>
 Decision Descent<Real>::inspect(const View& view, const Split& split) {
-    ++found_->counts().calls;
+    found_->counts().calls += counted(view);
     arrive(view);
     if (at_level(view.level).group.empty()) return {Visit::skip};
-    ++found_->counts().visited;
+    found_->counts().visited += counted(view);
     if (split.rule == nullptr) return {Visit::stop};
     return question_.ask(*walk_, *criterion_, view, split);
 }

@@ -4,11 +4,31 @@
 
 #include <limits>
 
+#include <ranks/agreement.hpp>
+
 namespace nestgrid::engine {
+
+namespace {
+
+/// Where a walk of all ranks meets an element: earlier ones have lesser strings.
+template <class Real>
+std::string walk_place_of(const ElementView<Real>& view) {
+    if (view.father == nullptr) {
+        std::string place;
+        for (unsigned shift = 32; shift > 0; shift -= 8) {
+            place += static_cast<char>(view.coarse >> (shift - 8U) & 0xFFU);
+        }
+        return place;
+    }
+    return walk_place_of(*view.father) + static_cast<char>(view.child);
+}
+
+}  // namespace
 
 template <class Real>
 FoundPoints<Real>::FoundPoints(const Hierarchy<Real>& hierarchy, std::size_t points)
-    : depth_(points, -std::numeric_limits<double>::infinity()) {
+    : depth_(points, -std::numeric_limits<double>::infinity()),
+      on_ranks_{hierarchy.facts().shared != nullptr} {
     result_.components = static_cast<std::size_t>(hierarchy.facts().components);
     result_.values.assign(points * result_.components, std::numeric_limits<double>::quiet_NaN());
     result_.level.assign(points, -1);
@@ -25,6 +45,7 @@ void FoundPoints<Real>::offer(const ElementView<Real>& view, std::uint32_t point
         element_ = static_cast<std::uint32_t>(result_.elements.size());
         result_.elements.append(view.element());
         result_.shape_of.push_back(view.shape);
+        if (on_ranks_) place_.push_back(walk_place_of(view));
     }
     depth_[point] = depth;
     result_.level[point] = view.level;
@@ -38,6 +59,54 @@ void FoundPoints<Real>::offer(const ElementView<Real>& view, std::uint32_t point
         }
         result_.values[point * components + c] = sum;
     }
+}
+
+template <class Real>
+void FoundPoints<Real>::agree(Ranks& ranks) {
+    Bytes own;
+    for (std::uint32_t p = 0; p < depth_.size(); ++p) {
+        if (result_.element_of[p] == none) continue;
+        const std::string& place = place_[result_.element_of[p]];
+        put(own, p);
+        put(own, depth_[p]);
+        put(own, static_cast<std::uint32_t>(place.size()));
+        for (const char digit : place) put(own, digit);
+        put(own, result_.level[p]);
+        put(own, result_.reference[p]);
+        for (double& value : values_at(p)) put(own, value);
+    }
+    std::vector<std::string> first(depth_.size());
+    for (std::uint32_t p = 0; p < depth_.size(); ++p) {
+        if (result_.element_of[p] != none) first[p] = place_[result_.element_of[p]];
+    }
+    Outbox box(ranks.size());
+    box.to_all() = std::move(own);
+    box.send_to_all(ranks, [&](int, Reader& in) {
+        while (in.more()) take(in, first);
+    });
+}
+
+/// Takes what another rank has found at a point, where that is deeper or comes first.
+/// \param first where the element of each point is met
+template <class Real>
+void FoundPoints<Real>::take(Reader& in, std::vector<std::string>& first) {
+    const auto p = in.get<std::uint32_t>();
+    const auto depth = in.get<double>();
+    std::string place(in.get<std::uint32_t>(), 0);
+    for (char& digit : place) digit = in.get<char>();
+    const auto level = in.get<int>();
+    const auto reference = in.get<Point>();
+    const bool wins = depth > depth_[p] || (depth == depth_[p] && place < first[p]);
+    for (double& value : values_at(p)) {
+        const auto told = in.get<double>();
+        if (wins) value = told;
+    }
+    if (!wins) return;
+    depth_[p] = depth;
+    result_.level[p] = level;
+    result_.reference[p] = reference;
+    result_.element_of[p] = none;
+    first[p] = std::move(place);
 }
 
 template class FoundPoints<float>;

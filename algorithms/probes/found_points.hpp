@@ -1,15 +1,20 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The results of a probe: a point in several elements gets the value of the one it is deepest in.
+// The results of a probe: a point in several elements gets the value of the one it is deepest in,
+// and of several such elements that of the first one.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <nestgrid/algorithms/probe.hpp>
+#include <nestgrid/algorithms/ranks.hpp>
 #include <walk/element_view.hpp>
 
 namespace nestgrid::engine {
+
+class Reader;
 
 template <class Real>
 class FoundPoints {
@@ -26,15 +31,24 @@ public:
     void offer(const ElementView<Real>& view, std::uint32_t point, const Point& s,
                std::span<const double> weight, double depth);
 
+    /// Takes what other ranks have found, and tells them what this one has. Collective.
+    void agree(Ranks& ranks);
     bool found(std::uint32_t point) const { return result_.found(point); }
     TraversalCounts& counts() { return result_.counts; }
     ProbeResult take() { return std::move(result_); }
 
 private:
+    std::span<double> values_at(std::uint32_t point) {
+        return std::span(result_.values).subspan(point * result_.components, result_.components);
+    }
+    void take(Reader& in, std::vector<std::string>& first);
+
     static constexpr std::uint32_t none = ProbeResult::no_element;
 
     ProbeResult result_;
     std::vector<double> depth_;  // of each point in its element
+    bool on_ranks_;
+    std::vector<std::string> place_;  // of each element in a walk of all ranks, where there are any
     std::uint32_t element_ = none;
 };
 

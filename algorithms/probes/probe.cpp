@@ -3,6 +3,7 @@
 #include <nestgrid/algorithms/probe_line.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,6 +14,8 @@
 #include <probes/box_descent.hpp>
 #include <probes/descent.hpp>
 #include <projection/by_criterion.hpp>
+#include <projection/made_for_ranks.hpp>
+#include <ranks/agreement.hpp>
 #include <walk/hanging_nodes.hpp>
 
 namespace nestgrid::engine {
@@ -59,27 +62,23 @@ void in_parts(std::span<T> points, const Take& take) {
 }
 
 /// Descends in reference coordinates, where nothing is curved.
-/// \return whether it may have missed a point of an element
 template <class Real>
-bool descend_nested(const Question<Real>& question, std::span<const std::uint32_t> which,
+void descend_nested(const Question<Real>& question, CoarseSearch& coarse,
                     FoundPoints<Real>& found) {
-    auto coarse = search_coarse(question.hierarchy, question.points, which);
     const Needs needs{.values = true,
                       .keys = question.needs_keys,
-                      .positions = question.criterion.wants_positions()};
+                      .positions = question.criterion.wants_positions(),
+                      .on_ranks = true};
     const Walk<Real> walk(question.hierarchy, needs, question.hanging);
     Descent<Real> descent(walk, question.criterion, found);
     in_parts(std::span(coarse.found), [&](auto some) { descent.run(some); });
-    return coarse.any_deformed || !std::ranges::all_of(coarse.found, [&](const auto& in) {
-               return found.found(in.point);
-           });
 }
 
 /// Descends through boxes.
 template <class Real>
 void descend_in_boxes(const Question<Real>& question, std::span<const std::uint32_t> which,
                       FoundPoints<Real>& found) {
-    Needs needs{.values = true, .keys = question.needs_keys, .positions = true};
+    Needs needs{.values = true, .keys = question.needs_keys, .positions = true, .on_ranks = true};
     needs.placed = question.finest;
     const Walk<Real> walk(question.hierarchy, needs, question.hanging);
     Reach reach;
@@ -98,15 +97,42 @@ ProbeResult answer(const Question<Real>& question) {
     FoundPoints<Real> found(question.hierarchy, count);
     std::vector<std::uint32_t> left(count);
     std::iota(left.begin(), left.end(), 0U);
+    const SharedNodes* const shared = question.hierarchy.facts().shared;
+    const auto descend = [&](const auto& alone) {
+        together(shared, "values at points", alone);
+        if (shared != nullptr) found.agree(shared->ranks());
+    };
     bool missed = true;
     if (question.bounded()) {
-        missed = descend_nested(question, left, found);
+        CoarseSearch coarse;
+        descend([&] {
+            coarse = search_coarse(question.hierarchy, question.points, left);
+            descend_nested(question, coarse, found);
+        });
+        // Descents that may miss a point of an element:
+        missed = coarse.any_deformed || !std::ranges::all_of(coarse.found, [&](const auto& in) {
+                     return found.found(in.point);
+                 });
         std::erase_if(left, [&](std::uint32_t p) { return found.found(p); });
     }
     if (missed && !left.empty()) {
-        descend_in_boxes(question, std::span<const std::uint32_t>(left), found);
+        descend([&] { descend_in_boxes(question, std::span(std::as_const(left)), found); });
     }
+    TraversalCounts& counts = found.counts();
+    std::array<std::uint64_t*, 3> sums{&counts.calls, &counts.visited, &counts.extracted};
+    if (shared != nullptr) take_sums(shared->ranks(), sums);
     return found.take();
+}
+
+/// What ranks compare before they ask for values at points.
+std::string asked_for(std::span<const Point> points, const Criterion& criterion) {
+    std::uint64_t sum = 0;
+    for (const Point& x : points) {
+        for (const double along : x)
+            sum = nestgrid::detail::mix64(sum + std::bit_cast<std::uint64_t>(along));
+    }
+    return "values at " + std::to_string(points.size()) + " points (" + std::to_string(sum) +
+           "), " + name_of(criterion);
 }
 
 }  // namespace
@@ -114,17 +140,32 @@ ProbeResult answer(const Question<Real>& question) {
 template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points,
                   const Criterion& criterion, const Bounds& bounds) {
-    require_sound(hierarchy, criterion, bounds);
-    require_points(points);
+    together(
+        hierarchy.facts().shared, [&] { return asked_for(points, criterion); },
+        [&] {
+            if (hierarchy.facts().shared != nullptr) {
+                require_same_state(hierarchy);
+                require_drawn_on_ranks(criterion, bounds, {}, false);
+            }
+            require_sound(hierarchy, criterion, bounds);
+            require_points(points);
+        });
     return answer<Real>({hierarchy, points, criterion, bounds.hanging(), true, false});
 }
 
 template <class Real>
 ProbeResult probe(const Hierarchy<Real>& hierarchy, std::span<const Point> points) {
-    require_points(points);
+    together(
+        hierarchy.facts().shared, [&] { return asked_for(points, Exact{}); },
+        [&] {
+            if (hierarchy.facts().shared != nullptr) require_same_state(hierarchy);
+            require_points(points);
+        });
     const HangingNodes hanging = find_hanging_nodes(hierarchy);
     const bool any = !hanging.empty();
-    return answer<Real>({hierarchy, points, Exact{}, any ? &hanging : nullptr, any, true});
+    // Values from other ranks are found by keys.
+    const bool needs_keys = any || hierarchy.facts().shared != nullptr;
+    return answer<Real>({hierarchy, points, Exact{}, any ? &hanging : nullptr, needs_keys, true});
 }
 
 template ProbeResult probe(const Hierarchy<float>&, std::span<const Point>, const Criterion&,
@@ -161,6 +202,7 @@ std::vector<double> only_values(ProbeResult result, const Point& x) {
 namespace nestgrid {
 
 ProbeResult probe(const DiscontinuousData& data, std::span<const Point> points) {
+    data.grid().facts().require_one_process("values of discontinuous data at points");
     ProbeResult result = engine::probe(data.grid(), points);
     const auto components = static_cast<std::size_t>(data.components());
     result.components = components;

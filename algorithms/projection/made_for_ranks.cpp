@@ -6,6 +6,7 @@
 #include <array>
 
 #include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/error.hpp>
 #include <ranks/agreement.hpp>
 #include <slices/leaf_bounds.hpp>
@@ -74,10 +75,11 @@ void require_drawn_on_ranks(const Hierarchy<Real>& grid) {
 
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
                             const IsosurfaceOptions& options, bool own_gradients) {
-    const auto* const own = dynamic_cast<const HierarchicalIndicator*>(&bounds);
-    const bool of_leaves = dynamic_cast<const LeafBounds*>(&bounds) != nullptr;
+    const bool own = dynamic_cast<const HierarchicalIndicator*>(&bounds) != nullptr ||
+                     dynamic_cast<const LeafBounds*>(&bounds) != nullptr ||
+                     dynamic_cast<const KeyFrames*>(&bounds) != nullptr;
     const std::array refused{
-        Refused{own == nullptr && !of_leaves, "a surface under other bounds than those of offsets"},
+        Refused{!own, "a surface under other bounds than those of offsets"},
         Refused{criterion.insists(), "a surface under a criterion that is not saturated"},
         Refused{options.normals && options.at_nodes,
                 "a surface with normals and vertices at nodes"},
@@ -89,13 +91,17 @@ void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
     refuse_first(refused);
 }
 
+std::string name_of(const Criterion& criterion) {
+    const Threshold* const threshold = criterion.as_threshold();
+    return "threshold " + (threshold == nullptr ? "none" : all_digits(threshold->epsilon()));
+}
+
 template <class Real>
 std::string asked_for(std::span<const Level<Real>> levels, const Criterion& criterion,
                       const IsosurfaceOptions& options) {
     std::string asked = "isosurfaces of ";
     for (const Level<Real>& level : levels) asked += all_digits(level.value) + ", ";
-    const Threshold* const threshold = criterion.as_threshold();
-    asked += "threshold " + (threshold == nullptr ? "none" : all_digits(threshold->epsilon()));
+    asked += name_of(criterion);
     if (options.at_nodes) asked += ", with vertices at nodes";
     if (options.normals) asked += ", with normals";
     return asked + (options.cap ? ", with caps" : "");

@@ -44,7 +44,9 @@ void require_drawn_on_ranks(const Hierarchy<Real>& grid);
 void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
                             const IsosurfaceOptions& options, bool own_gradients);
 
-/// What a surface is asked for with, as settle() compares it.
+/// A criterion as settle() compares it.
+std::string name_of(const Criterion& criterion);
+/// What a surface is asked for with, likewise.
 template <class Real>
 std::string asked_for(std::span<const Level<Real>> levels, const Criterion& criterion,
                       const IsosurfaceOptions& options);

@@ -8,6 +8,7 @@
 
 #include <nestgrid/error.hpp>
 #include <nestgrid/keys.hpp>
+#include <surfaces/simplex_tally.hpp>
 #include <walk/frontier.hpp>
 
 namespace nestgrid::engine {
@@ -67,6 +68,8 @@ Outcome Outcome::of_exception() {
         throw;
     } catch (const Cancelled&) {
         return {Kind::cancelled, {}};
+    } catch (const OverLimit&) {
+        return {Kind::over_limit, {}};
     } catch (const InvalidInput& e) {
         return {Kind::invalid_input, e.what()};
     } catch (const GridError& e) {
@@ -83,10 +86,11 @@ Outcome Outcome::of_exception() {
 void settle(Ranks& ranks, const std::string& asked, const Outcome& own) {
     const auto none = static_cast<std::uint64_t>(ranks.size());
     const auto here = static_cast<std::uint64_t>(ranks.rank());
-    const bool cancelled = own.kind == Outcome::Kind::cancelled;
-    const bool failed = own.kind != Outcome::Kind::done && !cancelled;
+    const bool failed = own.kind > Outcome::Kind::cancelled;
+    const auto where = [&](bool is) { return is ? here : none; };
     const std::uint64_t hash = hash_of(asked);
-    std::array<std::uint64_t, 4> least{failed ? here : none, cancelled ? here : none, hash, ~hash};
+    std::array<std::uint64_t, 5> least{where(failed), where(own.kind == Outcome::Kind::cancelled),
+                                       where(own.kind == Outcome::Kind::over_limit), hash, ~hash};
     ranks.reduce(least, Ranks::Reduction::min);
     if (least[0] < none) {
         Bytes told;
@@ -100,13 +104,21 @@ void settle(Ranks& ranks, const std::string& asked, const Outcome& own) {
         fail(kind, "rank " + std::to_string(least[0]) + ": " + as_text(failure));
     }
     if (least[1] < none) throw Cancelled{};
-    if (least[2] != ~least[3]) refuse_different(ranks.gather(as_bytes(asked)));
+    if (least[2] < none) throw OverLimit{};
+    if (least[3] != ~least[4]) refuse_different(ranks.gather(as_bytes(asked)));
 }
 
 std::string all_digits(double number) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.17g", number);
     return text.data();
+}
+
+void take_sums(Ranks& ranks, std::span<std::uint64_t*> numbers) {
+    std::vector<std::uint64_t> all;
+    for (const std::uint64_t* number : numbers) all.push_back(*number);
+    ranks.reduce(all, Ranks::Reduction::sum);
+    for (std::size_t i = 0; i < all.size(); ++i) *numbers[i] = all[i];
 }
 
 void take_greatest(Ranks& ranks, std::span<double*> numbers) {

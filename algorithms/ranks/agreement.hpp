@@ -13,13 +13,22 @@
 
 #include <string>
 
+#include <nestgrid/optional.hpp>
 #include <ranks/shared_nodes.hpp>
 
 namespace nestgrid::engine {
 
 /// How a rank ended a part that it did alone.
 struct Outcome {
-    enum class Kind : std::uint8_t { done, cancelled, invalid_input, grid_error, io_error, other };
+    enum class Kind : std::uint8_t {
+        done,
+        over_limit,
+        cancelled,
+        invalid_input,
+        grid_error,
+        io_error,
+        other
+    };
     Kind kind = Kind::done;
     std::string sentence;  ///< where it failed
 
@@ -28,7 +37,8 @@ struct Outcome {
 };
 
 /// Throws, on all ranks, what the least rank that failed throws, with its number before the
-/// sentence; or that ranks ask for different things; or Cancelled where some rank was cancelled.
+/// sentence; or that ranks ask for different things; or Cancelled where some rank was cancelled;
+/// or OverLimit where some rank counted more than the limit.
 /// Collective, one reduction.
 /// \param asked what this rank is asked for, without an end: "an isosurface of 0.5"
 ///
@@ -56,6 +66,16 @@ void together(const SharedNodes* shared, const char* asked, Function&& function)
     together(
         shared, [asked] { return std::string(asked); }, std::forward<Function>(function));
 }
+
+/// 1 for an element that this rank counts, else 0. Ranks that have parts of one element all visit
+/// it; the one with its first leaf counts it.
+template <class View>
+std::uint64_t counted(const View& view) {
+    return view.member->presence == Presence::partly ? 0 : 1;
+}
+
+/// Adds the numbers of all ranks up. Collective.
+void take_sums(Ranks& ranks, std::span<std::uint64_t*> numbers);
 
 /// A number as it is compared: with all digits.
 std::string all_digits(double number);

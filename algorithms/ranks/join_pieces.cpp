@@ -137,18 +137,18 @@ void count_components(Ranks& ranks, const Surface<dimension>& piece, JoinedPiece
 }
 
 template <int dimension>
-JoinedPiece join(const Isosurface<dimension>& piece, const SharedNodes& shared) {
+JoinedPiece join(const Surface<dimension>& surface,
+                 std::span<const std::array<NodeKey, 2>> vertex_names, const SharedNodes& shared) {
     Ranks& ranks = shared.ranks();
-    const Surface<dimension>& surface = piece.surface;
     JoinedPiece joined;
     std::vector<KeyPair> names;
     together(&shared, "the joined pieces of a surface", [&] {
-        if (piece.names.size() != surface.vertices.size()) {
+        if (vertex_names.size() != surface.vertices.size()) {
             throw InvalidInput("the piece has " + std::to_string(surface.vertices.size()) +
                                " vertices, but was drawn on ranks with " +
-                               std::to_string(piece.names.size()));
+                               std::to_string(vertex_names.size()));
         }
-        for (const auto& [a, b] : piece.names) names.emplace_back(a, b);
+        for (const auto& [a, b] : vertex_names) names.emplace_back(a, b);
         joined.number.resize(names.size());
         joined.owner.assign(names.size(), ranks.rank());
     });
@@ -170,11 +170,15 @@ JoinedPiece join(const Isosurface<dimension>& piece, const SharedNodes& shared) 
 namespace nestgrid::detail {
 
 template <int dimension>
-JoinedPiece join_pieces(const Isosurface<dimension>& piece, const engine::SharedNodes& shared) {
-    return engine::join(piece, shared);
+JoinedPiece join_pieces(const Surface<dimension>& piece,
+                        std::span<const std::array<NodeKey, 2>> names,
+                        const engine::SharedNodes& shared) {
+    return engine::join(piece, names, shared);
 }
 
-template JoinedPiece join_pieces(const Isosurface<2>&, const engine::SharedNodes&);
-template JoinedPiece join_pieces(const Isosurface<3>&, const engine::SharedNodes&);
+template JoinedPiece join_pieces(const Surface<2>&, std::span<const std::array<NodeKey, 2>>,
+                                 const engine::SharedNodes&);
+template JoinedPiece join_pieces(const Surface<3>&, std::span<const std::array<NodeKey, 2>>,
+                                 const engine::SharedNodes&);
 
 }  // namespace nestgrid::detail

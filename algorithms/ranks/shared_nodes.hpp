@@ -67,10 +67,11 @@ public:
     template <class Write, class Take>
     void tell_sharers(Write&& write, Take&& take) const;
     /// Takes maxima over the ranks that have each node. Collective.
+    /// \tparam Numbers an array of unsigned numbers
     /// \param get get(node) returns this rank's numbers
     /// \param raise raise(node, numbers) returns whether it raised any
     /// \return whether some rank was told more than it knew
-    template <std::size_t n, class Get, class Raise>
+    template <class Numbers, class Get, class Raise>
     bool raise(Get&& get, Raise&& raise) const;
 
     /// The hanging nodes that this rank has, wherever the leaf is that they hang on.
@@ -81,7 +82,7 @@ public:
     void set_hanging(HangingNodes hanging);
 
 private:
-    template <std::size_t n, class Get, class Raise>
+    template <class Numbers, class Get, class Raise>
     bool raise_common(Get& get, Raise& raise) const;
     void keep(NodeKey node, std::vector<int> sharers);
     void keep_common(std::span<const Candidate> candidates);
@@ -132,33 +133,34 @@ void SharedNodes::tell_sharers(Write&& write, Take&& take) const {
     });
 }
 
-template <std::size_t n, class Get, class Raise>
+template <class Numbers, class Get, class Raise>
 bool SharedNodes::raise(Get&& get, Raise&& raise) const {
     bool raised = false;
     tell_sharers([&](Bytes& out, NodeKey node) { put(out, get(node)); },
-                 [&](int, NodeKey node, Reader& in) {
-                     raised |= raise(node, in.get<std::array<std::uint16_t, n>>());
-                 });
-    if (!common_.empty()) raised |= raise_common<n>(get, raise);
+                 [&](int, NodeKey node, Reader& in) { raised |= raise(node, in.get<Numbers>()); });
+    if (!common_.empty()) raised |= raise_common<Numbers>(get, raise);
     std::uint64_t any = raised ? 1 : 0;
     ranks_->reduce(std::span(&any, 1), Ranks::Reduction::max);
     return any != 0;
 }
 
-template <std::size_t n, class Get, class Raise>
+template <class Numbers, class Get, class Raise>
 bool SharedNodes::raise_common(Get& get, Raise& raise) const {
+    constexpr std::size_t n = std::tuple_size_v<Numbers>;
     bool raised = false;
     std::vector<std::uint64_t> all(n * common_.size(), 0);
     for (std::size_t i = 0; i < common_.size(); ++i) {
         if (!common_here_[i]) continue;
-        const std::array<std::uint16_t, n> own = get(common_[i]);
+        const Numbers own = get(common_[i]);
         std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(n * i));
     }
     ranks_->reduce(all, Ranks::Reduction::max);
     for (std::size_t i = 0; i < common_.size(); ++i) {
         if (!common_here_[i]) continue;
-        std::array<std::uint16_t, n> to;
-        for (std::size_t k = 0; k < n; ++k) to[k] = static_cast<std::uint16_t>(all[n * i + k]);
+        Numbers to;
+        for (std::size_t k = 0; k < n; ++k) {
+            to[k] = static_cast<typename Numbers::value_type>(all[n * i + k]);
+        }
         raised |= raise(common_[i], to);
     }
     return raised;

@@ -59,7 +59,11 @@ std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
         if (!request.functions.empty()) {
             return with_levels(hierarchy, request, options, count);
         }
-        return count(isosurface_levels(hierarchy, std::span<const double>(request.isovalues)));
+        Levels<Real> levels{&hierarchy, {}};
+        together(hierarchy.facts().shared, "a number of triangles", [&] {
+            levels = isosurface_levels(hierarchy, std::span<const double>(request.isovalues));
+        });
+        return count(levels);
     } catch (const Cancelled&) {
         return std::nullopt;
     }

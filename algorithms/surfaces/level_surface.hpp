@@ -58,7 +58,10 @@ public:
         keeps_simplices_ = false;
     }
     /// Only counts from now on. The caller must drop simplices by forget_element().
-    void count_only() { counts_only_ = true; }
+    void count_only() {
+        counts_only_ = true;
+        keeps_names_ = false;
+    }
     bool counts_only() const { return counts_only_; }
     void forget_element() { builder_.clear(); }
 

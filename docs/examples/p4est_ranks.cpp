@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A forest that p8est distributes over MPI, refined and repartitioned, and one closed surface of
-// it: docs/distributed.md goes through it. Each rank draws its piece where the leaves are; rank 0
-// writes the triangles of all into an .stl file.
+// it: docs/distributed.md goes through it. Each rank draws its piece where the leaves are, and
+// writes it into its part of one file.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <vector>
 
 #include <p8est_extended.h>
 
-#include <nestgrid/adapters/mpi.hpp>
+#include <nestgrid/adapters/mpi_files.hpp>
 #include <nestgrid/adapters/p4est.hpp>
 #include <nestgrid/algorithms/distributed.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
@@ -72,35 +71,6 @@ struct Wave {
 };
 // [field]
 
-void write_stl(const Surface<3>& piece, Ranks& ranks, const char* path) {
-    std::vector<float> corners;
-    for (const auto& triangle : piece.simplices) {
-        for (const auto v : triangle) {
-            for (const double x : piece.vertices[v]) corners.push_back(static_cast<float>(x));
-        }
-    }
-    const auto bytes = std::as_bytes(std::span(corners));
-    const auto all = ranks.gather({bytes.begin(), bytes.end()});
-    if (ranks.rank() != 0) return;
-    std::uint32_t count = 0;
-    for (const auto& each : all) count += static_cast<std::uint32_t>(each.size() / 36);
-    std::FILE* const file = std::fopen(path, "wb");
-    if (file == nullptr) return std::perror(path);
-    const std::array<char, 80> header{"one closed surface of a distributed forest"};
-    std::fwrite(header.data(), 1, header.size(), file);
-    std::fwrite(&count, sizeof count, 1, file);
-    const std::array<char, 12> normal{};
-    for (const auto& each : all) {
-        for (std::size_t at = 0; at < each.size(); at += 36) {
-            std::fwrite(normal.data(), 1, 12, file);
-            std::fwrite(each.data() + at, 1, 36, file);
-            std::fwrite(normal.data(), 1, 2, file);
-        }
-    }
-    std::fclose(file);
-    std::printf("%d ranks, %u triangles\n", ranks.size(), count);
-}
-
 void draw(p8est_t* forest, const char* path) {
     // [ranks]
     MpiRanks ranks(MPI_COMM_WORLD);
@@ -110,8 +80,14 @@ void draw(p8est_t* forest, const char* path) {
     const HierarchicalIndicator indicator(grid, field);
     const auto piece = isosurface(grid, field, 0.0, under(indicator, 0.02), {.cap = true});
     // [ranks]
-    if (ranks.rank() == 0) std::printf("|U| <= %.3f on it\n", piece.error_bound);
-    write_stl(piece.surface, ranks, path);
+    // [file]
+    const JoinedPiece joined = join_pieces(piece, grid);
+    write_vtp(ranks, piece, joined, path);
+    // [file]
+    if (ranks.rank() != 0) return;
+    std::printf("%d ranks, %llu triangles, %llu open edges, |U| <= %.3f\n", ranks.size(),
+                static_cast<unsigned long long>(joined.simplices),
+                static_cast<unsigned long long>(joined.open), piece.error_bound);
 }
 
 }  // namespace
@@ -126,7 +102,7 @@ int main(int argc, char** argv) {
         p8est_refine(forest, 0, crosses, nullptr);
         p8est_partition(forest, 0, nullptr);
     }
-    draw(forest, argc > 1 ? argv[1] : "surface.stl");
+    draw(forest, argc > 1 ? argv[1] : "surface.vtp");
     p8est_destroy(forest);
     p8est_connectivity_destroy(cube);
     MPI_Finalize();

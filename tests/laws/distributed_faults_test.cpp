@@ -195,9 +195,8 @@ TEST(DistributedFaults, OneRankAsksForWhatIsRefused) {
                     "distributed grids"});
     expect_all_say("budget", {.projection = {.max_triangles = 9}},
                    {"rank 2: no threshold is searched"});
-    expect_all_say(
-        "another algorithm", {.draws_at_once = true},
-        {"rank 0 asks for a preroll of offsets, factor 1, slope 0, and rank 2 for isosurfaces"});
+    expect_all_say("another algorithm", {.draws_at_once = true},
+                   {"rank 0 asks for a preroll, and rank 2 for isosurfaces"});
 }
 
 TEST(DistributedFaults, ValuesOfOneRankAreBad) {

@@ -4,22 +4,14 @@
 // What is not made for distributed grids is refused, on all ranks, before they talk to each other;
 // docs/distributed.md lists the same.
 #include <nestgrid/algorithms/cell_data.hpp>
-#include <nestgrid/algorithms/count_triangles.hpp>
+#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
-#include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/discontinuous_data.hpp>
 #include <nestgrid/algorithms/element_deviations.hpp>
-#include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/hanging_nodes.hpp>
-#include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/holes.hpp>
-#include <nestgrid/algorithms/isolines.hpp>
-#include <nestgrid/algorithms/node_levels.hpp>
-#include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/probe.hpp>
-#include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
-#include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "distributed_judge.hpp"
@@ -73,8 +65,6 @@ struct LeafValues {
 
 const std::vector<Refused<3>> in_space{
     {"normals", [](const auto& s) { s.draw({.normals = true, .at_nodes = true}); }},
-    {"number of triangles",
-     [](const auto& s) { isosurface(s.grid, s.field, 0.5, {.max_triangles = 100}); }},
     {"reference coordinates", [](const auto& s) { s.draw({.reference = true}); }},
     {"finest cuts", [](const auto& s) { s.draw({.cuts = Cuts::finest}); }},
     {"bounds of positions", [](const auto& s) { s.draw({.position_bounds = &s.indicator}); }},
@@ -85,41 +75,16 @@ const std::vector<Refused<3>> in_space{
     {"other bounds", [](const auto& s) { s.draw(Exact(), Wide()); }},
     {"unsaturated criteria",
      [](const auto& s) { s.draw(Unsaturated{Threshold(&s.indicator, 0.1)}, s.indicator); }},
-    {"update",
-     [](const auto& s) {
-         s.indicator.update(s.grid, s.field, ChangedBox{{0, 0, 0}, {1, 1, 1}});
-     }},
-    {"visual indicator",
-     [](const auto& s) {
-         visual_indicator({s.grid, s.field});
-     }},
-    {"numerical indicator",
-     [](const auto& s) {
-         numerical_indicator({s.grid, s.field});
-     }},
     {"wavelet indicator",
      [](const auto& s) {
          wavelet_indicator({s.grid, s.field});
      }},
-    {"geometry indicator",
-     [](const auto& s) {
-         geometry_indicator({s.grid, s.field});
-     }},
-    {"cut deviations",
-     [](const auto& s) {
-         cut_deviations({s.grid, s.field}, std::array{0.5}, s.indicator);
-     }},
-    {"node levels", [](const auto& s) { NodeLevels{s.grid}; }},
     {"hanging nodes",
      [](const auto& s) { derive_hanging_nodes(erase(s.grid, ZeroField<Grid<3>>{})); }},
     {"holes",
      [](const auto& s) {
          const auto all = s.hierarchy();
          const HiddenElements hidden(static_cast<const Hierarchy<double>&>(all));
-     }},
-    {"probe",
-     [](const auto& s) {
-         probe_point(s.hierarchy(), Point{0.3, 0.4, 0.5});
      }},
     {"cell averages",
      [](const auto& s) { CellAverages(s.grid, [](const CutGrid<3>::Element&) { return 1.0; }); }},
@@ -129,18 +94,19 @@ const std::vector<Refused<3>> in_space{
          const DiscontinuousData data(s.grid, values);
          const ElementDeviations deviations(data);
      }},
-};
-
-const std::vector<Refused<2>> in_plane{
-    {"isolines",
-     [](const auto& s) { isolines(s.grid, s.field, std::array{0.5}, under(s.indicator, 0)); }},
-    {"number of triangles of a graph",
+    {"discontinuous data at points",
      [](const auto& s) {
-         count_triangles({s.grid, s.field}, under(s.indicator, 0.1), 100);
+         const LeafValues values;
+         probe(DiscontinuousData(s.grid, values), std::vector<Point>{{0.3, 0.4, 0.5}});
      }},
-    {"height field",
-     [](const auto& s) { height_field(s.grid, s.field, 1.0, under(s.indicator, 0)); }},
-    {"shading", [](const auto& s) { shading(s.grid, s.field, under(s.indicator, 0)); }},
+    {"number of triangles after collapses",
+     [](const auto& s) {
+         const auto everywhere = [&](double threshold) {
+             return std::make_unique<const Threshold>(&s.indicator, threshold);
+         };
+         detail::find_collapse_error(s.hierarchy(), 0.5, everywhere, {s.indicator, 1.0}, 50, {},
+                                     SequentialExecutor{});
+     }},
 };
 
 /// \return what each of two ranks says
@@ -179,7 +145,6 @@ void expect_refused(const std::vector<Refused<dim>>& all, typename Family::Grid 
 
 TEST(DistributedRefusals, WhatIsNotMadeForRanksSaysSo) {
     expect_refused<3, UnbalancedOctree>(in_space, UnbalancedOctree::grids()[0]);
-    expect_refused<2, UnbalancedQuadtree>(in_plane, UnbalancedQuadtree::grids()[0]);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TYPED_TEST(OneWalk, AsksEachElementOnce) {
         for (const double threshold : {0.0, 0.01, 0.1, 0.5}) {
             const Threshold s(&indicator, threshold);
             for (const bool cap : {false, true}) {
-                isosurface(grid, field, 0.01, s, indicator, {.cap = cap});
+                isosurface(grid, field, 0.01, under(s, indicator), {.cap = cap});
                 EXPECT_LE(field.most_asked(), 1) << threshold;
             }
         }

@@ -6,7 +6,7 @@
 #pragma once
 
 #include <nestgrid/algorithms/distributed.hpp>
-#include <nestgrid/algorithms/isosurface_options.hpp>
+#include <nestgrid/algorithms/surface.hpp>
 
 namespace nestgrid {
 
@@ -39,18 +39,20 @@ struct JoinedPiece {
 namespace detail {
 
 template <int dimension>
-JoinedPiece join_pieces(const Isosurface<dimension>& piece, const engine::SharedNodes& shared);
+JoinedPiece join_pieces(const Surface<dimension>& piece,
+                        std::span<const std::array<NodeKey, 2>> names,
+                        const engine::SharedNodes& shared);
 
 }  // namespace detail
 
 /// Numbers the vertices of the pieces of a surface. Collective.
-/// \param piece as it was drawn on the grid
+/// \param piece as it was drawn on the grid: an Isosurface, a slice or a Shading
 ///
 /// \throw InvalidInput, on all ranks alike, where a piece has other vertices than those drawn, or
 ///        was drawn into a sink
-template <class Grid, int dimension>
-JoinedPiece join_pieces(const Isosurface<dimension>& piece, const Distributed<Grid>& grid) {
-    return detail::join_pieces(piece, *grid.shared_nodes());
+template <class Grid, class Piece>
+JoinedPiece join_pieces(const Piece& piece, const Distributed<Grid>& grid) {
+    return detail::join_pieces(piece.surface, piece.names, *grid.shared_nodes());
 }
 
 }  // namespace nestgrid

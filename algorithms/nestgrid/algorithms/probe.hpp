@@ -26,7 +26,8 @@ struct ProbeResult {
     /// P_S U: component c at point i is values[i * components + c]; not a number outside the grid.
     std::vector<double> values;
     std::vector<int> level;  ///< of the element around each point; -1 outside the grid
-    /// The element around each point, an index into elements; no_element outside the grid.
+    /// The element around each point, an index into elements; no_element outside the grid and, on
+    /// ranks, where another rank has the element. All else is the same on all ranks.
     std::vector<std::uint32_t> element_of;
     std::vector<Point> reference;  ///< each point in the reference element (shape.hpp)
     Elements elements;             ///< around points: as<Grid::Element>() gives the grid's own

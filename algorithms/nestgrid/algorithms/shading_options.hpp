@@ -31,7 +31,9 @@ struct Shading : ErrorBounds {
     /// oriented as the elements: counterclockwise in the plane.
     Surface<3> surface;
     TraversalCounts counts;
-    bool cancelled = false;            ///< by options.progress; the surface is then a part
+    bool cancelled = false;  ///< by options.progress; the surface is then a part
+    /// Names of vertices on distributed grids, for join_pieces().
+    std::vector<std::array<NodeKey, 2>> names{};
     std::size_t edge_nodes = 0;        ///< nodes of finer sides that were recorded
     std::size_t edge_nodes_bytes = 0;  ///< memory of this record
     std::size_t table_bytes = 0;       ///< hash table of the vertices

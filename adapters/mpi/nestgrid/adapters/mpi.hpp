@@ -35,6 +35,8 @@ public:
         if (!is(MPI_Finalized)) MPI_Comm_free(&communicator_);
     }
 
+    /// The copy of the communicator.
+    MPI_Comm communicator() const { return communicator_; }
     int rank() const override { return rank_; }
     int size() const override { return size_; }
 

@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Files of a surface in pieces (join_pieces.hpp), as VTK poly data with raw numbers:
+//   - write_vtp(): one file, as one process would write it, up to order. Each rank writes its own
+//     triangles and the vertices that it owns, at their places, by collective writes of MPI-IO;
+//   - write_pvtp(): a file a rank and a list of these. VTK does not weld them: vertices have their
+//     global numbers, and those that another rank owns are marked as duplicates.
+// Ranks without triangles write nothing, and are in no list.
+//
+// A file has its name once it is whole: before, it ends in ".part", and where a rank cannot write,
+// nothing is left of it. All functions are collective.
+#pragma once
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include <nestgrid/adapters/mpi.hpp>
+#include <nestgrid/adapters/vtk_pieces.hpp>
+
+namespace nestgrid {
+
+namespace detail {
+
+/// Ends all ranks alike where one of them could not write.
+/// \param failed what is wrong on this rank, or nothing
+///
+/// \throw IoError
+inline void require_written(Ranks& ranks, const std::string& failed) {
+    const auto bytes = std::as_bytes(std::span(failed));
+    const std::vector<Ranks::Bytes> all = ranks.gather({bytes.begin(), bytes.end()});
+    for (std::size_t r = 0; r < all.size(); ++r) {
+        if (all[r].empty()) continue;
+        throw IoError("rank " + std::to_string(r) + ": " +
+                      std::string(reinterpret_cast<const char*>(all[r].data()), all[r].size()));
+    }
+}
+
+/// A file that all ranks write.
+class MpiFile {
+public:
+    MpiFile(MpiRanks& ranks, std::string path) : ranks_{&ranks}, path_{std::move(path)} {
+        note(MPI_File_open(ranks.communicator(), part().c_str(), MPI_MODE_CREATE | MPI_MODE_WRONLY,
+                           MPI_INFO_NULL, &file_),
+             "opened");
+        std::uint64_t fails = failed_.empty() ? 0 : 1;
+        ranks.reduce(std::span(&fails, 1), Ranks::Reduction::max);
+        if (fails != 0) {
+            file_ = MPI_FILE_NULL;  // closing is for all ranks, and some have nothing to close
+            return;
+        }
+        note(MPI_File_set_size(file_, 0), "emptied");  // of what a run that died has left
+    }
+    MpiFile(const MpiFile&) = delete;
+    MpiFile& operator=(const MpiFile&) = delete;
+
+    /// Writes bytes at a place. Collective.
+    void write(std::uint64_t at, std::span<const std::byte> bytes) {
+        std::uint64_t rounds = (bytes.size() + most_ - 1) / most_;
+        ranks_->reduce(std::span(&rounds, 1), Ranks::Reduction::max);
+        for (std::uint64_t i = 0; i < rounds; ++i) {
+            const auto part = bytes.subspan(std::min<std::size_t>(i * most_, bytes.size()));
+            const auto count = static_cast<int>(std::min<std::size_t>(part.size(), most_));
+            if (file_ == MPI_FILE_NULL) continue;
+            MPI_Status status;
+            note(MPI_File_write_at_all(file_, static_cast<MPI_Offset>(at + i * most_), part.data(),
+                                       count, MPI_BYTE, &status),
+                 "written");
+            int written = count;
+            MPI_Get_count(&status, MPI_BYTE, &written);
+            if (written != count) note(MPI_ERR_NO_SPACE, "written");
+        }
+    }
+    /// Gives the file its name where all is written.
+    /// \param bytes of the whole
+    ///
+    /// \throw IoError on all ranks alike; nothing is left of the file then
+    void close(std::uint64_t bytes) {
+        if (file_ != MPI_FILE_NULL) {
+            MPI_Offset size = 0;
+            if (MPI_File_get_size(file_, &size) != MPI_SUCCESS ||
+                static_cast<std::uint64_t>(size) != bytes) {
+                note(MPI_ERR_NO_SPACE, "written");
+            }
+            note(MPI_File_close(&file_), "closed");
+        }
+        try {
+            require_written(*ranks_, failed_);
+        } catch (const IoError&) {
+            if (ranks_->rank() == 0) std::remove(part().c_str());
+            throw;
+        }
+        std::string failed;
+        if (ranks_->rank() == 0 && std::rename(part().c_str(), path_.c_str()) != 0) {
+            failed = "'" + path_ + "' could not be given its name";
+            std::remove(part().c_str());
+        }
+        require_written(*ranks_, failed);
+    }
+
+private:
+    static constexpr std::size_t most_ = std::size_t{1} << 28U;  // bytes of a write at most
+
+    std::string part() const { return path_ + ".part"; }
+    void note(int code, const char* what) {
+        if (code == MPI_SUCCESS || !failed_.empty()) return;
+        std::array<char, MPI_MAX_ERROR_STRING> text{};
+        int length = 0;
+        MPI_Error_string(code, text.data(), &length);
+        failed_ = "'" + path_ + "' could not be " + what + ": " + text.data();
+    }
+
+    MpiRanks* ranks_;
+    std::string path_;
+    MPI_File file_ = MPI_FILE_NULL;
+    std::string failed_;
+};
+
+/// Writes a file, which gets its name once it is whole. \return what is wrong, or nothing
+template <class Write>
+std::string write_whole_file(const std::string& path, const Write& write) {
+    const std::string part = path + ".part";
+    {
+        std::ofstream out(part, std::ios::binary);
+        write(out);
+        out.close();
+        if (out && std::rename(part.c_str(), path.c_str()) == 0) return {};
+    }
+    std::remove(part.c_str());
+    return "'" + path + "' could not be written";
+}
+
+/// What all pieces have alike.
+struct VtkColumns {
+    std::size_t components;
+    bool normals;
+};
+
+/// \throw InvalidInput on all ranks where `joined` is of another piece on some rank
+template <int dimension>
+VtkColumns columns_of(Ranks& ranks, const Surface<dimension>& surface, const JoinedPiece& joined) {
+    const std::size_t vertices = surface.vertices.size();
+    std::array<std::uint64_t, 3> all{
+        vertices == 0 ? 0 : surface.attributes.size() / vertices,
+        surface.normals.empty() ? std::uint64_t{0} : std::uint64_t{1},
+        joined.number.size() == vertices ? std::uint64_t{0} : std::uint64_t{1}};
+    ranks.reduce(all, Ranks::Reduction::max);
+    if (all[2] != 0) throw InvalidInput("join_pieces() numbered another piece than is written");
+    return {static_cast<std::size_t>(all[0]), all[1] != 0};
+}
+
+}  // namespace detail
+
+/// Writes the pieces of a surface as one file, and removes nothing but a file of that name.
+/// \param piece of this rank, an Isosurface, a slice or a Shading, as join_pieces() numbered it
+///
+/// \throw IoError on all ranks alike, with the number of a rank that could not write
+template <class Piece>
+void write_vtp(MpiRanks& ranks, const Piece& piece, const JoinedPiece& joined,
+               const std::string& path) {
+    const auto& surface = piece.surface;
+    const detail::VtkColumns columns = detail::columns_of(ranks, surface, joined);
+    std::vector<std::uint32_t> own;
+    for (std::uint32_t v = 0; v < joined.owner.size(); ++v) {
+        if (joined.owner[v] == ranks.rank()) own.push_back(v);
+    }
+    const std::vector<std::int64_t> number(joined.number.begin(), joined.number.end());
+    const detail::VtkPiece arrays =
+        detail::VtkPieceMaker(surface, std::move(own), number)
+            .make(columns.components, columns.normals, joined.first_vertex, joined.vertices,
+                  joined.first_simplex, joined.simplices);
+    const std::string header = detail::header_of(arrays);
+    const bool first = ranks.rank() == 0;
+    const auto text = [&](const std::string& all) {
+        return std::as_bytes(std::span(all).first(first ? all.size() : 0));
+    };
+    detail::MpiFile file(ranks, path);
+    file.write(0, text(header));
+    std::uint64_t end = header.size();
+    for (const auto& [array, at] : detail::places_of(arrays)) {
+        const std::uint64_t begin = header.size() + at;
+        const std::string length(reinterpret_cast<const char*>(&array->all), sizeof array->all);
+        file.write(begin, text(length));
+        file.write(begin + length.size() + array->first, array->bytes);
+        end = begin + length.size() + array->all;
+    }
+    const std::string last = detail::end_of_vtk_file();
+    file.write(end, text(last));
+    file.close(end + last.size());
+}
+
+/// Writes the piece of each rank that has triangles as a file of its own, and a list of these.
+/// \param path of the list, whose name ends in ".pvtp"; pieces are beside it, with the number of
+///        their rank
+///
+/// \throw IoError on all ranks alike, with the number of a rank that could not write
+template <class Piece>
+void write_pvtp(MpiRanks& ranks, const Piece& piece, const JoinedPiece& joined,
+                const std::string& path) {
+    const auto& surface = piece.surface;
+    const detail::VtkColumns columns = detail::columns_of(ranks, surface, joined);
+    const std::string stem = path.substr(0, path.rfind(".pvtp")) + "_";
+    const auto name_of = [&](std::size_t rank) { return stem + std::to_string(rank) + ".vtp"; };
+    detail::VtkPiece own = detail::numbered_piece(ranks.rank(), surface, joined);
+    std::string failed;
+    if (own.simplices > 0) {
+        failed =
+            detail::write_whole_file(name_of(static_cast<std::size_t>(ranks.rank())),
+                                     [&](std::ostream& out) { detail::write_piece(out, own); });
+    }
+    detail::require_written(ranks, failed);
+    const std::vector<Ranks::Bytes> any =
+        ranks.gather(Ranks::Bytes(own.simplices > 0 ? 1 : 0, std::byte{0}));
+    if (ranks.rank() == 0) {
+        std::vector<std::string> files;
+        for (std::size_t r = 0; r < any.size(); ++r) {
+            const std::string name = name_of(r);
+            if (!any[r].empty()) files.push_back(name.substr(name.rfind('/') + 1));
+        }
+        while (own.of_points.size() > 2) own.of_points.pop_back();
+        const auto add = [&](const std::string& name, std::size_t components) {
+            own.of_points.push_back({name, "Float64", components, {}, 0, 0});
+        };
+        for (std::size_t c = 0; c < columns.components; ++c) {
+            add("attribute " + std::to_string(c + 1), 1);
+        }
+        if (columns.normals) add("Normals", 3);
+        failed = detail::write_whole_file(
+            path, [&](std::ostream& out) { detail::write_list(out, own, files); });
+    }
+    detail::require_written(ranks, failed);
+}
+
+}  // namespace nestgrid
