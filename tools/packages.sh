@@ -4,15 +4,16 @@
 # Sourced by tools/demo.sh and tests/run.sh: the Debian packages they need, and how to get them.
 
 build_packages=(cmake ninja-build g++ pkgconf libboost-graph-dev libvtk9-dev libcli11-dev zlib1g-dev
-    libcgal-dev libtbb-dev libtet1.5-dev libmuparser-dev libjsoncpp-dev libinsighttoolkit5-dev)
+    libcgal-dev libtbb-dev libtet1.5-dev libmuparser-dev libjsoncpp-dev libinsighttoolkit5-dev
+    libhdf5-dev)
 test_packages=(clang gfortran libgtest-dev libopenmesh-dev libdeal.ii-dev mpi-default-dev libp4est-dev libdune-grid-dev
     libdune-functions-dev libdune-istl-dev libalberta-dev openmpi-bin tetgen libopenvdb-dev libzstd-dev valgrind
-    doxygen python3 mandoc zsh python3-nibabel python3-vtk9 teem-apps
+    doxygen python3 mandoc zsh python3-nibabel python3-vtk9 python3-h5py teem-apps
     python3-meshio assimp-utils gmsh admesh python3-pydicom dcmtk libgdcm-tools)
 picture_packages=(xvfb xauth libgl1-mesa-dri fonts-dejavu-core)
 data_packages=(mricron-data)
 python_packages=(zlib1g-dev python3-dev python3-numpy python3-pip python3-venv pybind11-dev)
-python_test_packages=(python3-pytest python3-mypy python3-skimage python3-openvdb python3-vtk9)
+python_test_packages=(python3-pytest python3-mypy python3-skimage python3-openvdb python3-vtk9 python3-h5py)
 paraview_packages=(paraview)
 view_packages=(libcpp-httplib-dev chromium)
 wasm_packages=(emscripten chromium python3)

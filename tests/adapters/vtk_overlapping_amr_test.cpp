@@ -136,6 +136,11 @@ TEST(VtkOverlappingAmr, IsRefusedWithASentence) {
     block->GetCellData()->GetArray("ball")->Resize(1);
     EXPECT_EQ(arrays("ball"),
               "block 0 of level 1 has an array 'ball' that is shorter than its cells");
+    const double* const low = amr->GetDataSet(1, 1)->GetOrigin();
+    amr->GetDataSet(1, 1)->SetOrigin(low[0] + 0.1, low[1], low[2]);
+    EXPECT_EQ(refusal([&] { vtk_blocks<3>(*amr); }),
+              "block 1 of level 1 does not lie in its box: it is of another level, or of another "
+              "place");
     const auto but_one = [](unsigned l, unsigned b) { return l != 1 || b != 2; };
     EXPECT_EQ(refusal([&] { vtk_blocks<3>(*amr_of(blocks, but_one)); }),
               "block 2 of level 1 has no data, but other blocks of the level do");

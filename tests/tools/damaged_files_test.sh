@@ -15,6 +15,12 @@ trap 'rm -rf "$work"' EXIT
 "$tools/make_volumes" "$work"
 "$tools/make_meshes" "$work" 1
 "$tools/make_plotfiles" "$work"
+case $format in
+vthb | enzo | flash | chombo | athena)
+    /usr/bin/python3 -B "$(dirname "$0")/make_amr_files.py" "$work" 2>/dev/null ||
+        { echo "skipped: there is no h5py or VTK" && exit 77; }
+    ;;
+esac
 cd "$work"
 gzip -c v.raw >v.raw.gz
 sed 's/raw$/gzip/; s/v\.gzip/v.raw.gz/' v.nhdr >packed.nhdr
@@ -29,6 +35,7 @@ printf '%s\n' 'NDims = 3' 'DimSize = 20 24 18' 'ElementType = MET_UCHAR' \
 "$program" pack film.nestgrid --encode-within 0.1 -o near.nestgrid >log
 
 isosurface=(isosurface IN --threshold 5% -o OUT.vtp)
+blocks=("${isosurface[@]}" --field dist --value 0 --read-limit 2)
 mesh=(mesh IN --read-limit 2 -o OUT.nestgrid)
 volume=("${isosurface[@]}" --value 130 --read-limit 2)
 # Names are found once, not in the child of each file.
@@ -44,6 +51,11 @@ nrrd)
 plotfile)
     mutate small/Header small/Level_{0,1,2}/Cell_{H,D_00000,D_00001} -- "${isosurface[@]}" --array distance --value 0
     ;;
+vthb) mutate amr.vthb amr/*.vti -- "${blocks[@]}" ;;
+enzo) mutate enzo/data0000.hierarchy enzo/data0000 enzo/data0000.cpu0000 -- "${blocks[@]}" ;;
+flash) mutate run_hdf5_plt_cnt_0000 -- "${blocks[@]}" ;;
+chombo) mutate chombo.hdf5 -- "${blocks[@]}" ;;
+athena) mutate athena.athdf -- "${blocks[@]}" ;;
 vtu) mutate solution.vtu -- isosurface IN --field u --value 0.3 --error 0.3 --read-limit 2 -o OUT.vtp ;;
 raw) mutate v.raw -- "${volume[@]}" --dims 20,24,18 --type uint8 ;;
 vti | mha | nii | nii.gz) mutate v.$format -- "${volume[@]}" ;;

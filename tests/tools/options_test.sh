@@ -103,7 +103,7 @@ for command in isosurface slice isolines boundary probe info; do
     void $command 'is for .raw files' "v.nii.gz $options" --endian big
     void $command 'is for .raw files' "v.nrrd $options" --spacing 1,1,1
     void $command 'is for AMReX plotfile, .dcm, .vti, .vtu and .nestgrid' "v.mha $options" --array value
-    void $command 'is for AMReX plotfile files' "v.mha $options" --cells centres
+    void $command 'is for AMReX plotfile, .* files' "v.mha $options" --cells centres
     echo "$command --cells" >>covered
     void $command 'one frame only' "v.mha $options" --frame 0
     void $command 'one number per sample' "v.nrrd $options" --component 0
@@ -277,7 +277,7 @@ for command in height surface; do
     keep='-o kept/x.vtp'
     differ $command --array "plane.nestgrid $options --array x" "plane.nestgrid $options --array x*y"
     void $command 'is for AMReX plotfile, .dcm, .vti, .vtu and .nestgrid' "hills.pgm $options" --array value
-    void $command 'is for AMReX plotfile files' "hills.pgm $options" --cells centres
+    void $command 'is for AMReX plotfile, .* files' "hills.pgm $options" --cells centres
     echo "$command --cells" >>covered
     void $command 'is for standard input' "hills.pgm $options" --input-format pgm
     void $command 'is for standard output' "hills.pgm $options" --output-format ply

@@ -77,7 +77,7 @@ refused 1 "'other' has another grid than the first input" \
     isosurface plt00000 other --array distance --value 0 --time 0.5
 refused 1 "'missing' is no plotfile, as the first is" \
     isosurface plt00000 missing --array distance --value 0 --time 0.5
-refused 1 "the plotfile 'plane' has 2 dimensions, not 3" \
+refused 1 "'plane' has 2 dimensions, not 3" \
     isosurface plt00000 plane --array distance --value 0 --time 0.5
 refused 1 "^nestgrid: --label is for .* files, not for 'plt00000'" \
     isosurface plt00000 --array distance --label 3 --value 0.5

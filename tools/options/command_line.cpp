@@ -68,13 +68,16 @@ void add_read_options(CLI::App& command, Input& input) {
         ->type_name("ENDING")
         ->group("Input");
     command
-        .add_option("--array,--field", input.array,
-                    "the array of a .vti, the field of a .vtu, a .nestgrid or a plotfile")
+        .add_option(
+            "--array,--field", input.array,
+            "the array of a .vti, the field of a .vtu, a .nestgrid, a plotfile or other files "
+            "of boxes")
         ->type_name("NAME")
         ->group("Input");
     command
         .add_option("--cells", input.cells,
-                    "values at nodes of the cells of a plotfile: smooth means, or sharper ones, "
+                    "values at nodes of the cells of a plotfile or other files of boxes: smooth "
+                    "means, or sharper ones, "
                     "which take those of cells for values at centres or for means over cells")
         ->type_name("RULE")
         ->group("Input")

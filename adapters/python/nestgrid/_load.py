@@ -18,6 +18,7 @@ from . import _nestgrid
 from ._arguments import SampleType, flag, numbers, optional, sample_type, sequence, suggestion
 from ._arguments import path as path_kind
 from ._arguments import takes, text, whole
+from ._blocks import Blocks
 from ._cells import Cells
 from ._fields import Field
 from ._nestgrid import InvalidInput, IoError
@@ -28,7 +29,8 @@ Numbers = Union[Sequence[float], np.ndarray]
 #: What load() reads, by the end of the name.
 PICTURES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm", ".pnm")
 SUFFIXES = [".nestgrid", ".vti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".raw"]
-SUFFIXES += [".vtu", ".dcm", ".dicom", *PICTURES]
+SUFFIXES += [".vtu", ".vthb", ".hierarchy", ".athdf", ".dcm", ".dicom", *PICTURES]
+BOXES = (".vthb", ".hierarchy", ".athdf")
 
 
 @takes(
@@ -54,15 +56,17 @@ def load(
     big_endian: bool = False,
     spacing: Numbers | None = None,
 ) -> Field | Frames:
-    """The field of a file: a Volume, a hierarchy's, Cells, or Frames where there are several.
+    """The field of a file: a Volume, a hierarchy's, Cells, Blocks, or Frames of several.
 
     path        ends in .nestgrid; or in .vtu, a mesh (Cells); or in .vti, .mhd, .mha, .nrrd,
                 .nhdr, .nii, .nii.gz or .raw, which are volumes: Volume.array[i, j, k] is sample i
                 of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it; or a
                 picture; or a plotfile of AMReX, a folder with the file Header, which must stay as
-                it is. What has one sample along an axis is a plane: Volume.array[i, j]. Reading
-                .vtu, .vti, .nii and pictures needs VTK's Python package, DICOM pydicom
-    array       the name of the field, for .nestgrid, plotfiles, .vtu and .vti, or of the series of
+                it is; or other boxes of cells (Blocks): .vthb, Enzo's .hierarchy, .athdf of
+                Athena++, or HDF5 of Chombo or FLASH, of any name. What has one sample along an axis is a plane: Volume.array[i, j]. Reading
+                .vtu, .vti, .vthb, .nii, pictures, Enzo and FLASH needs VTK's Python package, HDF5
+                h5py, DICOM pydicom
+    array       the name of the field, for .nestgrid, boxes, .vtu and .vti, or of the series of
                 DICOM; "": the only one, or the active one, or that of the slice
     frame       which of several volumes in a file, from 0; None: the first, with a warning that
                 tells how many there are
@@ -79,15 +83,17 @@ def load(
     name = path.lower() if isinstance(path, str) else ""
     suffix = max((each for each in SUFFIXES if name.endswith(each)), key=len, default="")
     plotfile = _plotfile(str(path))
+    boxes = suffix in BOXES or (not suffix and _is_hdf5(str(path)))
     dicom = not plotfile and (suffix in (".dcm", ".dicom") or _is_dicom(str(path)))
-    if not suffix and not dicom and not plotfile:
+    if not suffix and not dicom and not plotfile and not boxes:
         near = suggestion(os.path.splitext(name)[1], SUFFIXES)
         raise InvalidInput(f"load(): '{path}' ends in none of {', '.join(SUFFIXES)}{near}")
     raw = {"dims": dims, "type": type, "big_endian": big_endian or None, "spacing": spacing}
     given = [each for each, value in raw.items() if value is not None]
     if given and (suffix != ".raw" or plotfile):
         raise InvalidInput(f"load(): {given[0]} is for .raw files: '{path}' describes itself")
-    if array and not dicom and not plotfile and suffix not in (".nestgrid", ".vti", ".vtu"):
+    named = dicom or plotfile or boxes or suffix in (".nestgrid", ".vti", ".vtu")
+    if array and not named:
         raise InvalidInput(f"load(): '{path}' has one array, which has no name: leave out array")
     choice = Choice(frame, component, magnitude)
     if (plotfile or suffix in (".nestgrid", ".raw")) and choice != Choice():
@@ -102,6 +108,8 @@ def load(
     if dicom:
         return _read_apart("_read_dicom.py", str(path), array, choice)
     _require_file(str(path))
+    if boxes:
+        return _boxes(str(path), array, choice)
     if suffix == ".vtu":
         return _mesh(str(path), array, choice)
     if suffix == ".raw":
@@ -125,6 +133,15 @@ def _plotfile(path: str) -> str:
     """The folder of a plotfile, which may be named by its Header, too; "" where it is none."""
     folder = os.path.dirname(path) or "." if os.path.basename(path) == "Header" else path
     return folder if os.path.isfile(os.path.join(folder, "Header")) else ""
+
+
+def _is_hdf5(path: str) -> bool:
+    """Whether a file begins as those of HDF5 do, which Chombo and FLASH name in many ways."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(8) == b"\x89HDF\r\n\x1a\n"
+    except OSError:
+        return False
 
 
 def _is_dicom(path: str) -> bool:
@@ -352,6 +369,38 @@ def _mesh(path: str, array: str, choice: Choice) -> Cells:
         )
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {error}") from None
+
+
+def _boxes(path: str, array: str, choice: Choice) -> Blocks:
+    if choice.frame is not None or choice.magnitude:
+        given = "magnitude" if choice.magnitude else "frame"
+        raise InvalidInput(f"load(): {given} chooses nothing of boxes: one of component alone")
+    place, data = _ask("_read_amr.py", path, array)
+    components, kind = place["components"], np.dtype(place["kind"])
+    if components == 1 and choice.component is not None:
+        raise InvalidInput(f"load(): component chooses nothing: {path} has one number per cell")
+    if components > 1 and choice.component is None:
+        raise InvalidInput(
+            f"{path} has {components} numbers per cell, not one: choose by component, from 0 to "
+            f"{components - 1}"
+        )
+    part = _numbered(path, "component", choice.component or 0, components)
+    boxes, begin = [], 0
+    for level, lower, shape in place["boxes"]:
+        count = components * int(np.prod(shape))
+        numbers = data[begin : begin + count * kind.itemsize].view(kind)
+        begin += count * kind.itemsize
+        boxes.append((level, lower, numbers.reshape((*shape, components), order="F")[..., part]))
+    try:
+        return Blocks(
+            boxes,
+            ratio=place["ratio"],
+            spacing=place["spacing"],
+            origin=place["origin"],
+            name=place["name"],
+        )
+    except InvalidInput as error:
+        raise InvalidInput(f"{path}: {str(error).removeprefix('Blocks(): ')}") from None
 
 
 def _read_apart(reader_program: str, path: str, array: str, choice: Choice) -> Volume:

@@ -3,6 +3,7 @@
 """Boxes of cells on levels: of arrays, which are borrowed, and of plotfiles, which are mapped."""
 import os
 import pickle
+import sys
 from collections import Counter
 
 import numpy as np
@@ -161,3 +162,70 @@ def test_plotfiles(tmp_path):
     data.write_bytes(data.read_bytes()[:-1])
     with pytest.raises(nestgrid.IoError, match="is truncated"):
         nestgrid.load(folder)
+
+
+TOOLS = os.path.join(os.path.dirname(__file__), "..", "..", "tools")
+
+
+@pytest.fixture(scope="module")
+def amr_files(tmp_path_factory):
+    """One grid of blocks in each format, as make_amr_files.py writes it, and its folder."""
+    pytest.importorskip("h5py")
+    pytest.importorskip("vtkmodules.vtkIOAMR")
+    folder = tmp_path_factory.mktemp("amr")
+    sys.path.insert(0, TOOLS)
+    try:
+        import make_amr_files
+    finally:
+        sys.path.remove(TOOLS)
+    make_amr_files.write_all(str(folder), 3, 0.5)
+    make_amr_files.write_all(str(folder), 2, 0, "plane_")
+    return folder
+
+
+FORMATS = ["amr.vthb", "run_hdf5_plt_cnt_0000", "enzo/data0000.hierarchy", "chombo.hdf5", "athena.athdf"]
+
+
+def test_formats_of_codes_have_one_surface(amr_files):
+    """Whatever covered cells, ghost cells and blocks that are not stored hold."""
+    surfaces = []
+    for name in FORMATS:
+        field = nestgrid.load(amr_files / name, "dist")
+        assert field.name == "dist" and "80 boxes of dimension 3 on 3 levels" in repr(field), name
+        surfaces.append(field.isosurface(0))
+        assert set(edges(surfaces[-1]).values()) == {2}
+        np.testing.assert_array_equal(
+            np.sort(surfaces[-1].vertices, axis=0), np.sort(surfaces[0].vertices, axis=0), name
+        )
+        place = nestgrid.load(amr_files / name, "plac")
+        points = np.random.default_rng(1).uniform(0, 1, (50, 3))
+        np.testing.assert_allclose(place.probe(points), points[:, 0], atol=1e-12, err_msg=name)
+
+
+@pytest.mark.parametrize("name", ["amr.vthb", "chombo.hdf5", "athena.athdf"])
+def test_formats_of_codes_in_the_plane(amr_files, name):
+    field = nestgrid.load(amr_files / f"plane_{name}", "plac")
+    points = np.random.default_rng(1).uniform(0, 1, (50, 2))
+    np.testing.assert_allclose(field.probe(points), points[:, 0], atol=1e-12)
+
+
+def test_refusals_of_formats_of_codes(amr_files):
+    load = nestgrid.load
+    for name in FORMATS:
+        with pytest.raises(nestgrid.InvalidInput, match="has several fields, choose one by array"):
+            load(amr_files / name)
+        with pytest.raises(nestgrid.InvalidInput, match="no field 'dits', only .*did you mean 'dist'"):
+            load(amr_files / name, "dits")
+    with pytest.raises(nestgrid.InvalidInput, match="2 numbers per cell, not one: choose by comp"):
+        load(amr_files / "amr.vthb", "both")
+    second = load(amr_files / "amr.vthb", "both", component=1)
+    np.testing.assert_allclose(second.range, [0, 1], atol=1e-12)
+    with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
+        load(amr_files / "chombo.hdf5", "dist", component=0)
+    for name in ("run_hdf5_plt_cnt_0000", "enzo/data0000.hierarchy"):
+        path = str(amr_files / f"plane_{name}")
+        with pytest.raises(nestgrid.IoError, match="in the plane, where VTK reads .vthb alone"):
+            load(path, "dist")
+    (amr_files / "cut.athdf").write_bytes((amr_files / "athena.athdf").read_bytes()[:-9000])
+    with pytest.raises(nestgrid.IoError, match="cut.athdf cannot be read"):
+        load(amr_files / "cut.athdf", "dist")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's image data, hyper tree grids and unstructured grids as fields."""
+"""VTK's image data, hyper tree grids, unstructured grids and overlapping AMR as fields."""
 from __future__ import annotations
 
 import numpy as np
@@ -17,15 +17,18 @@ from vtkmodules.vtkCommonDataModel import (
     vtkDataObject,
     vtkHyperTreeGrid,
     vtkImageData,
+    vtkOverlappingAMR,
     vtkUnstructuredGrid,
 )
 
 import nestgrid
 
+from .._vtk_amr import boxes_of
+
 
 def field_of(data: vtkDataObject, array: vtkDataArray | None) -> nestgrid.Field:
-    """The field of image data or of an unstructured grid at points, or of a hyper tree grid in
-    cells. Image data are not copied.
+    """The field of image data or of an unstructured grid at points, or of a hyper tree grid or an
+    overlapping AMR in cells. Image data and AMR are not copied.
 
     Raises InvalidInput where the data are not of dimension 3 or the array does not fit.
     """
@@ -35,11 +38,21 @@ def field_of(data: vtkDataObject, array: vtkDataArray | None) -> nestgrid.Field:
         raise nestgrid.InvalidInput(
             f"'{array.GetName()}' has {array.GetNumberOfComponents()} components, not 1"
         )
+    if isinstance(data, vtkOverlappingAMR):
+        return _blocks(data, array)
     if isinstance(data, vtkHyperTreeGrid):
         return _octree(data, array)
     if isinstance(data, vtkUnstructuredGrid):
         return _cells(data, array)
     return _volume(data, array)
+
+
+def _blocks(amr: vtkOverlappingAMR, array: vtkDataArray) -> nestgrid.Blocks:
+    try:
+        boxes, place = boxes_of(amr, array.GetName())
+    except ValueError as error:
+        raise nestgrid.InvalidInput(str(error)) from None
+    return nestgrid.Blocks(boxes, **place)
 
 
 def _cells(grid: vtkUnstructuredGrid, array: vtkDataArray) -> nestgrid.Cells:

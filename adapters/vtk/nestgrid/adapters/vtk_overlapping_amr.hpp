@@ -55,6 +55,36 @@ inline std::size_t amr_levels_with_data(vtkOverlappingAMR& amr) {
     return amr.GetNumberOfLevels();
 }
 
+/// \throw InvalidInput where a block lies elsewhere than its box, or has cells of another size, as
+/// readers leave them that take a block for one of another level
+inline void require_place(vtkOverlappingAMR& amr, std::size_t level, std::size_t block, int dim) {
+    vtkUniformGrid* const grid = amr_block(amr, level, block);
+    const vtkAMRBox& box =
+        amr.GetAMRBox(static_cast<unsigned>(level), static_cast<unsigned>(block));
+    std::array<double, 3> spacing{};
+    amr.GetSpacing(static_cast<unsigned>(level), spacing.data());
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
+        const double begin = amr.GetOrigin()[d] + box.GetLoCorner()[d] * spacing[d];
+        const bool is_there = std::abs(grid->GetOrigin()[d] - begin) <= 1e-3 * spacing[d] &&
+                              std::abs(grid->GetSpacing()[d] - spacing[d]) <= 1e-3 * spacing[d];
+        if (is_there) continue;
+        throw InvalidInput(text_of_block(level, block) +
+                           " does not lie in its box: it is of another level, or of another place");
+    }
+}
+
+/// How many cells of a level there are along a side of one of the level before.
+/// \throw InvalidInput where that is no whole number
+inline int whole_ratio(double coarse, double fine, std::size_t level) {
+    const double ratio = coarse / fine;
+    if (!(ratio > 0.5 && ratio < 1e6) || std::abs(ratio - std::round(ratio)) > 1e-3 * ratio) {
+        throw InvalidInput("cells of level " + std::to_string(level) + " are " +
+                           std::to_string(ratio) +
+                           " times smaller than those before, not by a whole number");
+    }
+    return static_cast<int>(std::lround(ratio));
+}
+
 /// The box of a block in its first dim directions.
 template <int dim>
 BlockBox<dim> amr_box(vtkOverlappingAMR& amr, std::size_t level, std::size_t block) {
@@ -112,9 +142,9 @@ BlockArray<dim, Real> amr_array(vtkOverlappingAMR& amr, std::size_t level, std::
 
 /// The boxes of the levels that have data.
 ///
-/// \throw InvalidInput where there are none, where a level has data in part, and where the grid
-/// does not lie in space (dim = 3), or in a plane of constant z (dim = 2); BlockGrid checks the
-/// boxes
+/// \throw InvalidInput where there are none, where a level has data in part, where a block does not
+/// lie in its box, where the ratio of two levels is no whole number, and where the grid does not
+/// lie in space (dim = 3), or in a plane of constant z (dim = 2); BlockGrid checks the boxes
 template <int dim>
 Blocks<dim> vtk_blocks(vtkOverlappingAMR& amr) {
     const std::size_t levels = detail::amr_levels_with_data(amr);
@@ -128,12 +158,13 @@ Blocks<dim> vtk_blocks(vtkOverlappingAMR& amr) {
     for (std::size_t l = 0; l < levels; ++l) {
         BlockLevel<dim>& level = blocks.levels.emplace_back();
         for (std::size_t b = 0; b < amr.GetNumberOfDataSets(static_cast<unsigned>(l)); ++b) {
+            detail::require_place(amr, l, b, dim);
             level.boxes.push_back(detail::amr_box<dim>(amr, l, b));
         }
         std::array<double, 3> spacing{};
         amr.GetSpacing(static_cast<unsigned>(l), spacing.data());
         for (std::size_t d = 0; d < level.ratio.size(); ++d) {
-            if (l > 0) level.ratio[d] = static_cast<int>(std::lround(coarse[d] / spacing[d]));
+            if (l > 0) level.ratio[d] = detail::whole_ratio(coarse[d], spacing[d], l);
             if (l == 0) blocks.spacing[d] = spacing[d];
         }
         coarse = spacing;

@@ -191,6 +191,20 @@ def check_hyper_tree_grid():
     assert fetch(slice).GetPointData().GetArray("Depth").GetRange()[1] > 0
 
 
+def check_overlapping_amr():
+    source = pv.AMRGaussianPulseSource()
+    source.UpdatePipeline()
+    for filter in (pv.NestgridIsosurface(Input=source), pv.NestgridSlice(Input=source)):
+        filter.Scalars = ["CELLS", "Gaussian-Pulse"]
+        if filter.GetXMLName() == "NestgridSlice":
+            filter.Origin, filter.Normal = [0.1, 0.1, 0.4], [1, 2, 3]
+        else:
+            filter.Isovalue, filter.Cap = 0.3, 1
+        data = fetch(filter)
+        assert data.GetNumberOfPolys() > 50
+        assert filter.GetXMLName() == "NestgridSlice" or open_edges(data) == 0
+
+
 def check_reader():
     path = os.path.join(folder, "stored.nestgrid")
     reader = pv.OpenDataFile(path)
@@ -292,6 +306,7 @@ check_image_data()
 check_where_and_how()
 check_unstructured_grid()
 check_hyper_tree_grid()
+check_overlapping_amr()
 check_reader()
 check_times()
 check_frames()

@@ -227,7 +227,7 @@ INPUT = """
   <ProxyGroupDomain name="groups"><Group name="sources"/><Group name="filters"/></ProxyGroupDomain>
   <DataTypeDomain name="input_type" composite_data_supported="0">
     <DataType value="vtkImageData"/><DataType value="vtkHyperTreeGrid"/>
-    <DataType value="vtkUnstructuredGrid"/>
+    <DataType value="vtkUnstructuredGrid"/><DataType value="vtkOverlappingAMR"/>
   </DataTypeDomain>
   <InputArrayDomain name="one_component" attribute_type="any" number_of_components="1"/>
 </InputProperty>
@@ -428,6 +428,7 @@ class Filter(Drawing):
         info.Set(self.INPUT_REQUIRED_DATA_TYPE(), "vtkImageData")
         info.Append(self.INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid")
         info.Append(self.INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid")
+        info.Append(self.INPUT_REQUIRED_DATA_TYPE(), "vtkOverlappingAMR")
         return 1
 
     def array(self, data):
@@ -435,6 +436,10 @@ class Filter(Drawing):
         chosen = self.GetInputArrayInformation(0)
         if not chosen.Has(vtkDataObject.FIELD_NAME()):
             return None
+        if data.IsA("vtkOverlappingAMR"):  # has its arrays in blocks
+            data = data.NewIterator().GetCurrentDataObject()
+            if data is None:
+                return None
         in_cells = chosen.Get(vtkDataObject.FIELD_ASSOCIATION()) == vtkDataObject.CELL
         attributes = data.GetAttributes(vtkDataObject.CELL if in_cells else vtkDataObject.POINT)
         return attributes and attributes.GetArray(chosen.Get(vtkDataObject.FIELD_NAME()))

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# One grid of blocks in the formats of block-structured codes: all have one surface and one
+# description, times of several files are frames, and what is wrong is refused.
+# Arguments: the program, the maker of the files.
+/usr/bin/python3 -c 'import h5py, vtk' 2>/dev/null || { echo "skipped: there is no h5py or VTK"; exit 77; }
+make_files() { mkdir -p "$1" && /usr/bin/python3 -B "$maker" "$1"; }
+maker=$2
+. "$(dirname "$0")/functions.sh" "$1" true
+make_files . || exit 1
+files=(amr.vthb run_hdf5_plt_cnt_0000 enzo/data0000.hierarchy chombo.hdf5 athena.athdf)
+
+for file in "${files[@]}"; do
+    run info "$file"
+    [ "$(value dimension)" = 3 ] && [ "$(value type)" = float64 ] || fail "info: $file: $(cat out)"
+    grep -qE '^ +0 +8 +4096 +-$' out && grep -qE '^ +2 +[0-9]+ +[0-9]+ +2$' out || fail "levels: $(cat out)"
+    grep -qE '^dist +([12] +)?-0\.28[0-9]+ +0\.59[0-9]+$' out || fail "info: fields of $file: $(cat out)"
+    # Of leaves, nodes, levels and fields all say the same.
+    grep -E '^(leaf_elements|nodes|coarse_elements|origin|spacing)' out >facts
+    [ -f all_facts ] || cp facts all_facts
+    cmp -s facts all_facts || fail "$file describes another grid: $(cat facts)"
+    run isosurface "$file" --field dist --value 0 --threshold 0 --threshold 5e-3 -o s.vtp
+    [ "$(value open_edges | sort -u)" = 0 ] || fail "$file: open edges: $(cat out)"
+    value area >areas
+    [ -f all_areas ] || cp areas all_areas
+    cmp -s areas all_areas || fail "$file has another surface: $(cat areas)"
+    run slice "$file" --field dist --axis z --at 0.4 --threshold 0
+    refused 1 "there is no field 'dits', only .*: did you mean 'dist'\?" \
+        isosurface "$file" --field dits --value 0
+    refused 1 "there are several fields, choose one by --array" isosurface "$file" --value 0
+done
+awk -v area="$(head -1 areas)" 'BEGIN { exit !(area > 1.11 && area < 1.135) }' ||
+    fail "a sphere of 0.36 pi has the area $(head -1 areas)"
+
+for file in plane_amr.vthb plane_chombo.hdf5 plane_athena.athdf; do
+    run isolines "$file" --field dist --values 0 --threshold 0 -o l.vtp
+    run info "$file"
+    [ "$(value dimension)" = 2 ] || fail "info: $file: $(cat out)"
+done
+for file in plane_run_hdf5_plt_cnt_0000 plane_enzo/data0000.hierarchy; do
+    refused 1 "it lies in the plane, where VTK reads .vthb alone" info $file
+done
+
+# Between the times of two files the surface moves; at one of them it is that of the file.
+for pair in run_hdf5_plt_cnt_0000 enzo/data0000.hierarchy chombo.hdf5 athena.athdf; do
+    run isosurface "later_$pair" --field dist --value 0 --threshold 1e-3 -o alone.vtp
+    run isosurface "$pair" "later_$pair" --field dist --value 0 --threshold 1e-3 --time 1 -o timed.vtp
+    cmp -s alone.vtp timed.vtp || fail "$pair: the surface at the time of a file is another one"
+    run isosurface "$pair" "later_$pair" --field dist --value 0 --threshold 1e-3 --frames 3 -o film.vtp
+    [ "$(value time | tr '\n' ' ')" = "0 0.5 1 " ] || fail "$pair: times of the film: $(cat out)"
+done
+run isosurface chombo.hdf5 --field dist --value 0 --threshold 0 --cells centres
+[ "$(value open_edges)" = 0 ] || fail "sharp values: $(cat out)"
+
+refused 1 "'both' has 2 numbers per cell, not one: choose by --component, from 0 to 1" \
+    isosurface amr.vthb --field both --value 0
+run isosurface amr.vthb --field both --component 0 --value 0 --threshold 0
+[ "$(value area)" = "$(head -1 all_areas)" ] || fail "a component has another surface: $(cat out)"
+refused 1 "'plane_chombo.hdf5' has 2 dimensions, not 3" \
+    isosurface chombo.hdf5 plane_chombo.hdf5 --field dist --value 0 --time 0.5
+refused 1 "'amr.vthb' is no file of the format of the first one" \
+    isosurface chombo.hdf5 amr.vthb --field dist --value 0 --time 0.5
+mv amr/amr_3.vti amr/gone.vti
+refused 1 "^nestgrid: 'amr.vthb': " info amr.vthb
+truncate -s 300000 athena.athdf
+refused 1 "^nestgrid: 'athena.athdf': it is no HDF5 file, or a damaged one" info athena.athdf
+printf '\211HDF\r\n\032\n' >nothing
+refused 1 "'?nothing'? is of no known format" isosurface nothing --value 0
+
+[ "$failures" = 0 ]

@@ -1,0 +1,311 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes one grid of blocks in each format of block-structured codes, as the codes lay them out.
+
+The blocks have 8 cells along each side and are divided by two, as all formats can have them, on
+three levels of the unit cube (or square). Cells that finer blocks cover hold a wrong value.
+Arguments: the folder.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import sys
+from typing import Any, Callable
+
+import h5py
+import numpy as np
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk
+
+N = 8  # cells along a block
+WRONG = 1e30
+
+Place = tuple[int, ...]
+Block = tuple[int, Place]  # level, and its place in blocks
+
+
+def blocks_of(dim: int) -> list[Block]:
+    """Level by level; around the corner (1/2, ...) twice finer, and once along one edge."""
+    places = list(itertools.product(range(2), repeat=dim))
+    divided = [(0, p) for p in places if sum(p) != 1]
+    finer = [(1, tuple(2 * a + b for a, b in zip(p, q))) for _, p in divided for q in places]
+    middle = [(1, p) for _, p in finer if all(a in (1, 2) for a in p)][:-1]
+    finest = [(2, tuple(2 * a + b for a, b in zip(p, q))) for _, p in middle for q in places]
+    return [(0, p) for p in places] + finer + finest
+
+
+def is_divided(block: Block, blocks: list[Block]) -> bool:
+    return (block[0] + 1, tuple(2 * a for a in block[1])) in blocks
+
+
+def parent(block: Block) -> Block:
+    return block[0] - 1, tuple(a // 2 for a in block[1])
+
+
+def edges(block: Block) -> tuple[np.ndarray, np.ndarray]:
+    size = 0.5 / 2 ** block[0]
+    low = size * np.array(block[1], float)
+    return low, low + size
+
+
+Function = Callable[..., np.ndarray]
+
+
+def ball(centre: float) -> Function:
+    return lambda *x: np.sqrt(sum((a - c) ** 2 for a, c in zip(x, (centre, 0.5, 0.45)))) - 0.3
+
+
+def place(*x: np.ndarray) -> np.ndarray:
+    return x[0] + 0 * x[-1]
+
+
+def values(block: Block, f: Function, blocks: list[Block]) -> np.ndarray:
+    """Values at the centres of cells, array[i, j, k] along x, y and z."""
+    low, high = edges(block)
+    axes = [a + (b - a) * (np.arange(N) + 0.5) / N for a, b in zip(low, high)]
+    inside = f(*np.meshgrid(*axes, indexing="ij"))
+    return np.full_like(inside, WRONG) if is_divided(block, blocks) else inside
+
+
+Fields = dict[str, Function]
+
+
+def write_vthb(path: str, dim: int, fields: Fields) -> None:
+    blocks = blocks_of(dim)
+    levels = [[b for b in blocks if b[0] == level] for level in range(3)]
+    amr = vtk.vtkOverlappingAMR()
+    amr.Initialize(3, [len(level) for level in levels])
+    amr.SetGridDescription(vtk.VTK_XYZ_GRID if dim == 3 else vtk.VTK_XY_PLANE)
+    amr.SetOrigin([0, 0, 0])
+    for number, level in enumerate(levels):
+        step = 0.5 / N / 2**number
+        amr.SetSpacing(number, [step] * 3)
+        for i, block in enumerate(level):
+            low = [N * a for a in block[1]] + [0] * (3 - dim)
+            high = [N * a + N - 1 for a in block[1]] + [-1] * (3 - dim)
+            amr.SetAMRBox(number, i, vtk.vtkAMRBox(low, high))
+            grid = vtk.vtkUniformGrid()
+            grid.SetOrigin([step * a for a in low])
+            grid.SetSpacing([step] * 3)
+            grid.SetDimensions([N + 1] * dim + [1] * (3 - dim))
+            vector = []
+            for name, f in fields.items():
+                flat = values(block, f, blocks).ravel(order="F")
+                array = numpy_to_vtk(flat, deep=True)
+                array.SetName(name)
+                grid.GetCellData().AddArray(array)
+                vector.append(flat)
+            both = numpy_to_vtk(np.ascontiguousarray(np.stack(vector, axis=1)), deep=True)
+            both.SetName("both")
+            grid.GetCellData().AddArray(both)
+            amr.SetDataSet(number, i, grid)
+    vtk.vtkAMRUtilities.BlankCells(amr)
+    writer = vtk.vtkXMLUniformGridAMRWriter()
+    writer.SetFileName(path)
+    writer.SetInputDataObject(amr)
+    assert writer.Write()
+
+
+def write_flash(path: str, dim: int, fields: Fields, time: float = 0) -> None:
+    blocks = blocks_of(dim)
+    number = {block: i + 1 for i, block in enumerate(blocks)}  # from 1
+    corners = list(itertools.product(range(2), repeat=dim))
+    gid = np.full((len(blocks), 2 * dim + 1 + 2**dim), -1, np.int32)
+    for i, block in enumerate(blocks):
+        for d in range(dim):
+            for side in range(2):
+                beside = list(block[1])
+                beside[d] += 2 * side - 1
+                inside = 0 <= beside[d] < 2 ** (block[0] + 1)
+                key = (block[0], tuple(beside))
+                gid[i, 2 * d + side] = number.get(key, -1) if inside else -20
+        if block[0] > 0:
+            gid[i, 2 * dim] = number[parent(block)]
+        if is_divided(block, blocks):
+            for c, corner in enumerate(corners):  # x moves fastest
+                child = tuple(2 * a + b for a, b in zip(block[1], corner[::-1]))
+                gid[i, 2 * dim + 1 + c] = number[block[0] + 1, child]
+    box = np.zeros((len(blocks), 3, 2))
+    for i, block in enumerate(blocks):
+        low, high = edges(block)
+        box[i, :dim, 0], box[i, :dim, 1] = low, high
+    with h5py.File(path, "w") as file:
+        texts = ["setup call", "file creation time", "flash version", "build date", "build dir"]
+        texts += ["build machine", "cflags", "fflags", "setup time stamp", "build time stamp"]
+        kind = [("file format version", "<i4")]
+        kind += [(name, "S400" if "call" in name or "flags" in name else "S80") for name in texts]
+        file["sim info"] = np.array([(9, *[b"FLASH 4"] * len(texts))], kind)
+
+        def scalars(name: str, pairs: dict[str, Any], kind: str) -> None:
+            padded = [(key.ljust(80).encode(), value) for key, value in pairs.items()]
+            file[name] = np.array(padded, [("name", "S80"), ("value", kind)])
+
+        sides = [N] * dim + [1] * (3 - dim)
+        whole = dict(zip(("nxb", "nyb", "nzb"), sides))
+        whole |= {"dimensionality": dim, "globalnumblocks": len(blocks), "nstep": 7}
+        scalars("integer scalars", whole, "<i4")
+        scalars("real scalars", {"time": time, "dt": 0.1}, "<f8")
+        roots = dict(zip(("nblockx", "nblocky", "nblockz"), [2] * dim + [1] * (3 - dim)))
+        roots |= {"iprocs": 1, "jprocs": 1, "kprocs": 1, "lrefine_max": 3}
+        scalars("integer runtime parameters", roots, "<i4")
+        ends = {f"{a}{end}": float(e) for a in "xyz" for end, e in (("min", 0), ("max", 1))}
+        scalars("real runtime parameters", ends, "<f8")
+        scalars("logical runtime parameters", {"restart": 0}, "<i4")
+        text = np.array([(b"geometry".ljust(80), b"cartesian".ljust(80))], [("name", "S80"), ("value", "S80")])
+        file["string runtime parameters"] = text
+        file["string scalars"] = text
+        file["gid"] = gid
+        file["bounding box"] = box
+        file["coordinates"] = box.mean(axis=2)
+        file["block size"] = box[:, :, 1] - box[:, :, 0]
+        file["refine level"] = np.array([b[0] + 1 for b in blocks], np.int32)
+        types = [2 if is_divided(b, blocks) else 1 for b in blocks]
+        file["node type"] = np.array(types, np.int32)
+        file["unknown names"] = np.array([[name[:4].ljust(4).encode()] for name in fields], "S4")
+        for name, f in fields.items():
+            data = np.stack([values(b, f, blocks).T for b in blocks])
+            file[name[:4].ljust(4)] = data.reshape((len(blocks), *sides[::-1]))
+
+
+def write_enzo(folder: str, dim: int, fields: Fields, time: float = 0) -> None:
+    """One file of numbers; grids in the order of Enzo, siblings before the children of the last."""
+    os.makedirs(folder, exist_ok=True)
+    name = os.path.join(folder, "data0000")
+    blocks = blocks_of(dim)
+    text: list[str] = []
+    order: list[Block] = []
+
+    def write(chain: list[Block]) -> None:
+        order.append(chain[0])
+        number = len(order)
+        low, high = edges(chain[0])
+        joined = lambda row: " ".join(f"{a:.17g}" for a in row)  # noqa: E731
+        text.append(f"\nGrid = {number}\nTask = 0\nGridRank = {dim}")
+        text.append(f"GridDimension = {joined([N + 6] * dim)}\nGridStartIndex = {joined([3] * dim)}")
+        text.append(f"GridEndIndex = {joined([N + 2] * dim)}")
+        text.append(f"GridLeftEdge = {joined(low)}\nGridRightEdge = {joined(high)}")
+        text.append(f"Time = {time}\nSubgridsAreStatic = 0\nNumberOfBaryonFields = {len(fields)}")
+        text.append(f"FieldType = 0\nBaryonFileName = ./data0000.cpu0000\nNumberOfParticles = 0")
+        text.append(f"Pointer: Grid[{number}]->NextGridThisLevel = {number + 1 if chain[1:] else 0}")
+        if chain[1:]:
+            write(chain[1:])
+        children = [b for b in blocks if b[0] == chain[0][0] + 1 and parent(b) == chain[0]]
+        text.append(
+            f"Pointer: Grid[{number}]->NextGridNextLevel = {len(order) + 1 if children else 0}"
+        )
+        if children:
+            write(children)
+
+    write([b for b in blocks if b[0] == 0])
+    with open(name + ".hierarchy", "w") as file:
+        file.write("\n".join(text) + "\n")
+    with open(name, "w") as file:
+        ends = f"DomainLeftEdge = {'0 ' * dim}\nDomainRightEdge = {'1 ' * dim}\n"
+        file.write(f"InitialCycleNumber = 3\nInitialTime = {time}\nTopGridRank = {dim}\n")
+        file.write(f"TopGridDimensions = {f'{2 * N} ' * dim}\n{ends}RefineBy = 2\n")
+        faces = "3 " * dim
+        file.write(f"LeftFaceBoundaryCondition = {faces}\nRightFaceBoundaryCondition = {faces}\n")
+        file.write("MaximumRefinementLevel = 2\nHydroMethod = 0\nNumberOfParticles = 0\n")
+        file.write("CurrentTimeIdentifier = 1\nComovingCoordinates = 0\nVersionNumber = 2.0\n")
+        file.write("LengthUnits = 1\nMassUnits = 1\nTimeUnits = 1\nDensityUnits = 1\n")
+        for i, field in enumerate(fields):
+            file.write(f"DataLabel[{i}] = {field}\n#DataCGSConversionFactor[{i}] = 1e-24\n")
+    with h5py.File(name + ".cpu0000", "w") as file:
+        for i, block in enumerate(order):
+            for field, f in fields.items():
+                file[f"Grid{i + 1:08d}/{field}"] = values(block, f, blocks).T
+
+
+def write_chombo(path: str, dim: int, fields: Fields, time: float = 0, ghosts: int = 1) -> None:
+    blocks = blocks_of(dim)
+    axes = "ijk"[:dim]
+    box_kind = [(f"lo_{a}", "<i4") for a in axes] + [(f"hi_{a}", "<i4") for a in axes]
+    vector = [(f"intvect{a}", "<i4") for a in axes]
+    with h5py.File(path, "w") as file:
+        file.attrs["filetype"] = np.bytes_("VanillaAMRFileType")
+        file.attrs["num_levels"] = np.int32(3)
+        file.attrs["num_components"] = np.int32(len(fields))
+        file.attrs["time"] = float(time)
+        for i, name in enumerate(fields):
+            file.attrs[f"component_{i}"] = np.bytes_(name)
+        file.create_group("Chombo_global").attrs["SpaceDim"] = np.int32(dim)
+        for level in range(3):
+            group = file.create_group(f"level_{level}")
+            cells = 2 * N * 2**level
+            group.attrs["dx"] = 1 / cells
+            group.attrs["dt"] = 0.1
+            group.attrs["time"] = float(time)
+            group.attrs["ref_ratio"] = np.int32(2 if level < 2 else 1)
+            group.attrs["prob_domain"] = np.array((0,) * dim + (cells - 1,) * dim, box_kind)
+            mine = [b for b in blocks if b[0] == level]
+            boxes = [tuple(N * a for a in b[1]) + tuple(N * a + N - 1 for a in b[1]) for b in mine]
+            group["boxes"] = np.array(boxes, box_kind)
+            attributes = group.create_group("data_attributes")
+            attributes.attrs["comps"] = np.int32(len(fields))
+            attributes.attrs["ghost"] = np.array((ghosts,) * dim, vector)
+            attributes.attrs["outputGhost"] = np.array((ghosts,) * dim, vector)
+            attributes.attrs["objectType"] = np.bytes_("FArrayBox")
+            data, offsets = [], [0]
+            for block in mine:
+                for f in fields.values():
+                    padded = np.pad(values(block, f, blocks), ghosts, constant_values=WRONG)
+                    data.append(padded.ravel(order="F"))
+                offsets.append(offsets[-1] + len(fields) * data[-1].size)
+            group["data:datatype=0"] = np.concatenate(data)
+            group["data:offsets=0"] = np.array(offsets, np.int64)
+
+
+def write_athena(path: str, dim: int, fields: Fields, time: float = 0, kind: str = ">f8") -> None:
+    """Leaves alone, as Athena++ writes them, the first field in one data set, others in another."""
+    blocks = blocks_of(dim)
+    leaves = [b for b in blocks if not is_divided(b, blocks)]
+    sides = [N] * dim + [1] * (3 - dim)
+    names = list(fields)
+    sets = {"prim": names[:1], "user": names[1:]}
+    with h5py.File(path, "w") as file:
+        file.attrs["NumCycles"] = np.array(7, ">i4")
+        file.attrs["Time"] = np.array(time, ">f8")
+        file.attrs["Coordinates"] = np.bytes_("cartesian")
+        for d in range(3):
+            file.attrs[f"RootGridX{d + 1}"] = np.array([0, 1, 1], ">f8")
+        roots = [2 * N] * dim + [1] * (3 - dim)
+        file.attrs["RootGridSize"] = np.array(roots, ">i4")
+        file.attrs["NumMeshBlocks"] = np.array(len(leaves), ">i4")
+        file.attrs["MeshBlockSize"] = np.array(sides, ">i4")
+        file.attrs["MaxLevel"] = np.array(2, ">i4")
+        file.attrs["NumVariables"] = np.array([len(each) for each in sets.values()], ">i4")
+        file.attrs["DatasetNames"] = np.array([each.encode() for each in sets], "S21")
+        file.attrs["VariableNames"] = np.array([each.encode() for each in names], "S21")
+        file["Levels"] = np.array([b[0] for b in leaves], ">i4")
+        places = [b[1] + (0,) * (3 - dim) for b in leaves]
+        file["LogicalLocations"] = np.array(places, ">i8")
+        for d in range(3):
+            faces, middles = [], []
+            for b in leaves:
+                low, high = (edges(b)[0][d], edges(b)[1][d]) if d < dim else (0.0, 1.0)
+                f = np.linspace(low, high, sides[d] + 1)
+                faces.append(f)
+                middles.append((f[1:] + f[:-1]) / 2)
+            file[f"x{d + 1}f"] = np.array(faces, kind)
+            file[f"x{d + 1}v"] = np.array(middles, kind)
+        for name, members in sets.items():
+            data = [[values(b, fields[m], blocks).T.reshape(sides[::-1]) for b in leaves] for m in members]
+            file[name] = np.array(data, kind)
+
+
+def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
+    fields = {"dist": ball(0.45 + 0.1 * time), "plac": place}
+    path = lambda name: os.path.join(folder, prefix + name)  # noqa: E731
+    write_vthb(path("amr.vthb"), dim, fields)
+    write_flash(path("run_hdf5_plt_cnt_0000"), dim, fields, time)
+    write_enzo(path("enzo"), dim, fields, time)
+    write_chombo(path("chombo.hdf5"), dim, fields, time)
+    write_athena(path("athena.athdf"), dim, fields, time)
+
+
+if __name__ == "__main__":
+    write_all(sys.argv[1], 3)
+    write_all(sys.argv[1], 3, 1, "later_")
+    write_all(sys.argv[1], 2, 0, "plane_")

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/blocks/vtk_blocks.hpp"
+
+#include <cmath>
+
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkInformation.h>
+#include <vtkNew.h>
+#include <vtkOutputWindow.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <nestgrid/adapters/vtk_overlapping_amr.hpp>
+
+#include "input/vtk_errors.hpp"
+
+namespace {
+
+using nestgrid::InvalidInput;
+namespace fs = std::filesystem;
+
+/// The numbers of a field where they are blanked, or of another type than wanted, are copied.
+template <class Array>
+void set_type(vtkUniformGrid& block, const std::string& name) {
+    vtkDataArray* const given = block.GetCellData()->GetArray(name.c_str());
+    if (given == nullptr) return;
+    vtkUnsignedCharArray* const ghosts = block.GetCellGhostArray();
+    if (Array::SafeDownCast(given) != nullptr && ghosts == nullptr) return;
+    vtkNew<Array> copy;
+    copy->DeepCopy(given);
+    copy->SetName(name.c_str());
+    const vtkIdType count =
+        ghosts == nullptr ? 0 : std::min(ghosts->GetNumberOfValues(), copy->GetNumberOfTuples());
+    for (vtkIdType i = 0; i < count; ++i) {
+        if ((ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENCELL) == 0) continue;
+        for (int c = 0; c < copy->GetNumberOfComponents(); ++c) copy->SetComponent(i, c, NAN);
+    }
+    block.GetCellData()->RemoveArray(name.c_str());
+    block.GetCellData()->AddArray(copy);
+}
+
+template <int dim, class Array>
+BoxNumbers numbers_in(const vtkSmartPointer<vtkOverlappingAMR>& amr, const std::string& name,
+                      int component) {
+    for (unsigned l = 0; l < amr->GetNumberOfLevels(); ++l) {
+        for (unsigned b = 0; b < amr->GetNumberOfDataSets(l); ++b) {
+            if (vtkUniformGrid* const block = amr->GetDataSet(l, b)) set_type<Array>(*block, name);
+        }
+    }
+    using Real = typename Array::ValueType;
+    const auto arrays = nestgrid::vtk_block_arrays<dim, Real>(*amr, name, component);
+    return {arrays_of<3, std::byte>(arrays),
+            std::make_shared<vtkSmartPointer<vtkOverlappingAMR>>(amr)};
+}
+
+/// \throw InvalidInput where a level has blocks, but no data: a file gives them or is damaged
+template <int dim>
+nestgrid::Blocks<3> boxes_in(vtkOverlappingAMR& amr) {
+    const nestgrid::Blocks<dim> blocks = nestgrid::vtk_blocks<dim>(amr);
+    for (std::size_t l = blocks.levels.size(); l < amr.GetNumberOfLevels(); ++l) {
+        if (amr.GetNumberOfDataSets(static_cast<unsigned>(l)) == 0) continue;
+        throw InvalidInput("level " + std::to_string(blocks.levels.size()) + " has no data");
+    }
+    return blocks_in_space(blocks);
+}
+
+/// The first error or warning of any reader of VTK.
+class Complaints : public vtkCommand {
+public:
+    static Complaints* New() { return new Complaints; }  // NOLINT(*-naming)
+    void Execute(vtkObject* caller, unsigned long event, void* data) override {
+        const std::string text = data == nullptr ? "" : static_cast<const char*>(data);
+        if (text.find("no tracer particles") != std::string::npos) return;  // need not be there
+        is_flat_ =
+            is_flat_ || text.find("Inconsistent types of vtkUniformGrid") != std::string::npos;
+        first_->Execute(caller, event, data);
+    }
+    /// Empty where there was none; without the place in VTK's source.
+    std::string first() const {
+        if (is_flat_) return "it lies in the plane, where VTK reads .vthb alone";
+        const std::size_t place = first_->message.find(", line ");
+        const std::size_t end =
+            place == std::string::npos ? place : first_->message.find(' ', place + 7);
+        return end == std::string::npos ? first_->message : first_->message.substr(end + 1);
+    }
+
+private:
+    vtkNew<ErrorCollector> first_;
+    bool is_flat_ = false;
+};
+
+std::optional<double> time_in(vtkOverlappingAMR& amr) {
+    if (amr.GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()) != 0) {
+        return amr.GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
+    }
+    vtkDataArray* const time = amr.GetFieldData()->GetArray("TimeValue");
+    if (time == nullptr || time->GetNumberOfValues() != 1) return std::nullopt;
+    return time->GetComponent(0, 0);
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkOverlappingAMR> read_quietly(
+    const std::function<vtkSmartPointer<vtkOverlappingAMR>()>& read) {
+    const vtkNew<Complaints> errors;
+    vtkOutputWindow* const window = vtkOutputWindow::GetInstance();
+    vtkObject::GlobalWarningDisplayOn();  // what a child process prints is thrown away
+    const unsigned long tags[]{window->AddObserver(vtkCommand::ErrorEvent, errors),
+                               window->AddObserver(vtkCommand::WarningEvent, errors)};
+    vtkSmartPointer<vtkOverlappingAMR> amr = read();
+    for (const unsigned long tag : tags) window->RemoveObserver(tag);
+    if (!errors->first().empty()) throw InvalidInput("it cannot be read: " + errors->first());
+    if (amr == nullptr) throw InvalidInput("it holds no overlapping AMR");
+    return amr;
+}
+
+BlockFile blocks_of_vtk(vtkOverlappingAMR& amr, std::vector<BlockFile::Field> fields,
+                        bool is_double, const ReadAmr& read) {
+    BlockFile file;
+    file.is_double = is_double;
+    file.dimension = amr.GetGridDescription() == VTK_XY_PLANE ? 2 : 3;
+    file.time = time_in(amr);
+    file.blocks = file.dimension == 2 ? boxes_in<2>(amr) : boxes_in<3>(amr);
+    file.fields = std::move(fields);
+    if (file.fields.empty()) throw InvalidInput("it has no data of cells");
+    file.numbers = [read, all = file.fields, is_double, is_flat = file.dimension == 2](
+                       std::size_t field, int component) {
+        const std::string& name = all.at(field).name;
+        const vtkSmartPointer<vtkOverlappingAMR> blocks = read(name);
+        if (is_flat) {
+            return is_double ? numbers_in<2, vtkDoubleArray>(blocks, name, component)
+                             : numbers_in<2, vtkFloatArray>(blocks, name, component);
+        }
+        return is_double ? numbers_in<3, vtkDoubleArray>(blocks, name, component)
+                         : numbers_in<3, vtkFloatArray>(blocks, name, component);
+    };
+    return file;
+}
+
+BlockFile blocks_of_vtk(vtkAMRBaseReader& reader, const fs::path& path) {
+    const vtkSmartPointer<vtkAMRBaseReader> kept(&reader);
+    const ReadAmr read = [kept, path](const std::string& field) {
+        return read_quietly([&] {
+            kept->SetEnableCaching(0);
+            kept->SetFileName(path.c_str());
+            for (int i = 0; i < kept->GetNumberOfCellArrays(); ++i) {
+                const char* const name = kept->GetCellArrayName(i);
+                kept->SetCellArrayStatus(name, field == name ? 1 : 0);
+            }
+            kept->SetMaxLevel(std::max(0, kept->GetNumberOfLevels() - 1));
+            kept->Update();
+            return vtkSmartPointer<vtkOverlappingAMR>(kept->GetOutput());
+        });
+    };
+    const vtkSmartPointer<vtkOverlappingAMR> amr = read("");
+    std::vector<BlockFile::Field> fields;
+    for (int i = 0; i < kept->GetNumberOfCellArrays(); ++i) {
+        fields.push_back({kept->GetCellArrayName(i)});
+    }
+    return blocks_of_vtk(*amr, std::move(fields), true, read);
+}
