@@ -130,8 +130,7 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
         which = 0;
         const OwnNet net = divided ? OwnNet{} : net_of(own, e);
         for (std::size_t k = 0; k < corners; ++k) {
-            u[k] = divided ? nodes_->values(father.key[k])[0]
-                           : net.net[net_corner(net.degree, father.shape->factors, net.number[k])];
+            u[k] = divided ? nodes_->values(father.key[k])[0] : own_value(e, net, k);
         }
     }
     for (std::size_t n = 0; n < nodes; ++n) {
@@ -237,7 +236,7 @@ void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, con
     std::array<double, max_corners> sorted{};
     for (std::size_t k = 0; k < shape.corners; ++k) sorted[own.number[k]] = u[k];
     const auto corners = std::span<const double>(sorted).first(shape.corners);
-    const double error = drawn_error(own, shape.factors, looked.facts.beta, corners);
+    const double error = drawn_error(e, own, looked.facts.beta, corners);
     const double allowed = tolerance_ + static_cast<double>(leaf.jump);
     const bool exceeds = static_cast<double>(float_above(error)) > allowed;
     if (looked.all_flat && (!exceeds || e.level >= depth_)) {
