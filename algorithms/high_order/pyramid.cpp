@@ -82,14 +82,11 @@ std::vector<Point> pyramid_points(int degree) {
 }
 
 CollapsedBox::CollapsedBox(std::span<const Place> points, int level) : low{1, 1, 1}, high{0, 0, 0} {
-    const std::int64_t apex = std::int64_t{1} << level;
     for (const Place& at : points) {
         const Point x = collapsed(point_at(at, level));
         for (std::size_t d = 0; d < 3; ++d) {
-            // At the apex a and b are all there are.
-            const bool all = at[2] == apex && d < 2;
-            low[d] = std::min(low[d], all ? 0 : x[d]);
-            high[d] = std::max(high[d], all ? 1 : x[d]);
+            low[d] = std::min(low[d], x[d]);
+            high[d] = std::max(high[d], x[d]);
         }
     }
 }

@@ -36,7 +36,7 @@ struct CollapsedBox {
     Point low;
     Point high;
 
-    /// \param points in units of 2^-level
+    /// \param points in units of 2^-level; at the apex a and b are those of the others
     CollapsedBox(std::span<const Place> points, int level);
     /// Puts the coefficients of a pyramid in the box.
     void restrict_net(const double* net, int degree, double* out) const;
