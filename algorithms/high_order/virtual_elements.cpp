@@ -91,21 +91,27 @@ void VirtualElements::coarse(Task* task, std::size_t i, Coarse& coarse, Family& 
     std::array<double, max_corners> u{};
     for (std::size_t k = 0; k < state.shape->corners; ++k) {
         state.key[k] = coarse_key(coarse.ids[k]);
-        u[k] = nodes_->values(state.key[k])[0];
+        if (!linear_) u[k] = nodes_->values(state.key[k])[0];
     }
+    own.coarse = i;
+    own.key = state.key;
     VirtualElement e;
     e.state = &state;
     set_leaf(e, base, state);
     describe(own, e, u.data(), family, 0);
 }
 
-/// Values at the corners of a coarse element.
+/// Values at the corners of a coarse element, which as a rule was asked for just before.
 NodeMask VirtualElements::coarse_values(Task* task, std::size_t i, std::span<double> out) const {
     auto& own = static_cast<OpenTask&>(*task);
-    Coarse coarse;
-    data_->base->coarse(own.base.get(), i, coarse, own.family);
+    if (own.coarse != i) {
+        Coarse coarse;
+        data_->base->coarse(own.base.get(), i, coarse, own.family);
+        own.coarse = i;
+        std::transform(coarse.ids.begin(), coarse.ids.end(), own.key.begin(), coarse_key);
+    }
     for (std::size_t k = 0; k < out.size() / components_; ++k) {
-        const double* const values = nodes_->values(coarse_key(coarse.ids[k]));
+        const double* const values = nodes_->values(own.key[k]);
         std::copy_n(values, components_,
                     out.begin() + static_cast<std::ptrdiff_t>(k * components_));
     }

@@ -96,9 +96,11 @@ private:
             std::vector<double> nets;  // of component 0, one child behind the other
         };
         std::unique_ptr<Task> base;
-        Family family;               // of a coarse element
-        std::vector<Halves> halves;  // by level of the element entered
-        NetRoom net;                 // of the element looked at last, where it is no box
+        Family family;                         // of a coarse element
+        std::size_t coarse = ~std::size_t{0};  // the one asked for last
+        CornerKeys key{};                      // of its corners
+        std::vector<Halves> halves;            // by level of the element entered
+        NetRoom net;                           // of the element looked at last, where it is no box
         std::uint32_t pyramid = VirtualElement::no_leaf;  // the one looked into last
         PyramidCurvature curvature;                       // of that
     };
