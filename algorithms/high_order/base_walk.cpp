@@ -57,11 +57,6 @@ void BaseWalk::for_each(const Function& function) const {
         Coarse coarse;
         Family& family = way.families[0];
         base_->coarse(way.task.get(), i, coarse, family);
-        if (coarse.shape == Shape::pyramid) {
-            throw InvalidInput("coarse element " + std::to_string(i) +
-                               " is a pyramid, whose functions are no polynomials; data of higher "
-                               "degree are drawn on all other shapes");
-        }
         BaseElement e{family.members.data(), &parts_of(coarse.shape), {},
                       coarse.corners,        coarse_path(i),          i};
         for (std::size_t k = 0; k < e.shape->corners; ++k) e.key[k] = coarse_key(coarse.ids[k]);

@@ -47,9 +47,8 @@ public:
     /// \throw InvalidInput where the hierarchy is of another dimension than 2 and 3
     explicit BaseWalk(const Hierarchy<double>& base);
 
-    /// \throw InvalidInput for a pyramid, and for an element that is divided otherwise than by
-    ///        red_rule(), or red_tetrahedron_rule() with any diagonal, but for the order of nodes
-    ///        and children
+    /// \throw InvalidInput for an element that is divided otherwise than by red_rule(), or
+    ///        red_tetrahedron_rule() with any diagonal, but for the order of nodes and children
     void for_each(const Function& function) const;
 
     /// As in "element 3/0/1".

@@ -55,7 +55,8 @@ HierarchyFacts facts_of(const HighOrderData& data) {
                      (base.features & (static_cast<unsigned>(Feature::boundary_faces) |
                                        static_cast<unsigned>(Feature::new_positions)));
     facts.decodes = true;  // what is below an element depends on P_S U at its corners
-    facts.only_shape = base.only_shape;
+    // Pyramids have tetrahedra below them.
+    facts.only_shape = base.only_shape == Shape::pyramid ? Shape::point : base.only_shape;
     return facts;
 }
 

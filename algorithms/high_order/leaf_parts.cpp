@@ -14,7 +14,7 @@ namespace {
 
 std::size_t child_of(const VirtualElement& e) { return static_cast<std::size_t>(e.way & 15U); }
 
-/// The coefficients on a part of an element, its corners in the order of the net.
+/// Those of a part of an element inside the leaf, on the surface of the element.
 NetFacts facts_on_part(const double* net, int degree, const ShapeParts& shape,
                        const ShapePart& part, std::span<const std::uint8_t> number) {
     std::array<std::uint8_t, 4> corner{};
@@ -31,6 +31,14 @@ NetFacts facts_on_part(const double* net, int degree, const ShapeParts& shape,
     return net_facts(on_part.data(), degree, part.factors);
 }
 
+/// Whether an element below a pyramid has its apex, so that the box around it is the element.
+bool reaches_apex(const VirtualElement& e) {
+    const auto& at = e.state->at;
+    return std::any_of(at.begin(),
+                       at.begin() + static_cast<std::ptrdiff_t>(e.state->shape->corners),
+                       [&](const Place& x) { return x[2] == std::int64_t{1} << e.level; });
+}
+
 }  // namespace
 
 bool VirtualElements::is_flat(const NetFacts& facts, int level) const {
@@ -42,9 +50,9 @@ auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> 
     const LeafPolynomial& leaf = records_->leaves()[e.leaf];
     const ShapeParts& in_leaf = leaf.parts();
     const ShapeParts& shape = *e.state->shape;
-    Looked looked{0, true, net_facts(own.net, own.degree, shape.factors)};
+    Looked looked{0, true, net_facts(own.net, own.degree, own.factors)};
     const bool flat_inside = is_flat(looked.facts, e.level);
-    const bool flat_parts = flat_inside && shape.factors.all_segments();
+    const bool flat_parts = flat_inside && in_leaf.is_box;
     std::array<FaceMask, max_corners> faces;
     for (std::size_t k = 0; k < shape.corners; ++k) {
         faces[k] = in_leaf.faces_at(e.state->at[k], e.level);
@@ -75,8 +83,13 @@ auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> 
             looked.facts.least = std::min(looked.facts.least, facts.least);
             looked.facts.greatest = std::max(looked.facts.greatest, facts.greatest);
             flat = is_flat(facts, e.level + on.shift);
+        } else if (!flat && own.curvature != nullptr) {
+            constexpr std::array shapes{Shape::segment, Shape::triangle, Shape::quadrilateral};
+            const double beta =
+                own.curvature->beta(shapes[part.count - 2U],
+                                    std::span<const Place>(corners).first(part.count), e.level);
+            flat = is_flat({beta, 0, 0}, e.level);
         } else if (!flat) {
-            // Inside the leaf, on the surface of the element.
             flat = is_flat(facts_on_part(own.net, own.degree, shape, part, own.number), e.level);
         }
         if (flat && part.count > 2) {
@@ -98,28 +111,83 @@ auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> 
 /// where P_S U is what is drawn, A is within s of that, and so on triangles. Or what the element's
 /// beta and the corners say.
 /// \param u P_S U at the corners, in the order of the net
-double VirtualElements::drawn_error(const OwnNet& own, const Factors& factors, double beta,
+double VirtualElements::drawn_error(const VirtualElement& e, const OwnNet& own, double beta,
                                     std::span<const double> u) const {
-    const AffineFit fit = fit_affine(u, factors);
-    const double distance = distance_from_affine(own.net, own.degree, factors, fit);
+    if (own.curvature != nullptr) return drawn_error_in_pyramid(e, own, beta, u);
+    const AffineFit fit = fit_affine(u, own.factors);
+    const double distance = distance_from_affine(own.net, own.degree, own.factors, fit);
     double off = 0;
     for (std::size_t k = 0; k < u.size(); ++k) {
-        off = std::max(off, std::abs(own.net[net_corner(own.degree, factors, k)] - u[k]));
+        off = std::max(off, std::abs(own.net[net_corner(own.degree, own.factors, k)] - u[k]));
     }
     return std::min(distance + fit.residual, beta + off + 2 * fit.residual) + least_beyond_;
+}
+
+/// The same of a pyramid or tetrahedron below a pyramid, with U in a box around it.
+/// \param beta of the box, which at the apex is the element
+double VirtualElements::drawn_error_in_pyramid(const VirtualElement& e, const OwnNet& own,
+                                               double beta, std::span<const double> u) const {
+    const ShapeParts& shape = *e.state->shape;
+    const bool pyramid = shape.shape == Shape::pyramid;
+    const double residual = pyramid ? pyramid_residual(u) : 0;
+    std::array<Point, 4> x{};
+    std::array<double, 4> affine{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t corner = i == 0 ? 0 : shape.axis[i - 1];
+        x[i] = point_at(e.state->at[corner], e.level);
+        // The corners of the base are off to one side and the other in turn.
+        const double twist = pyramid ? (u[0] - u[1] - u[2] + u[3]) / 4 : 0;
+        affine[i] = u[corner] - (corner == 4 ? 0 : corner == 0 ? twist : -twist);
+    }
+    const auto places = std::span<const Place>(e.state->at).first(shape.corners);
+    const double distance =
+        CollapsedBox(places, e.level).distance_from_affine(own.net, own.degree, x, affine);
+    if (distance + residual + least_beyond_ <= tolerance_) {
+        return distance + residual + least_beyond_;
+    }
+    double off = 0;
+    for (std::size_t k = 0; k < u.size(); ++k) {
+        off = std::max(off, std::abs(own_value(e, own, k) - u[k]));
+    }
+    if (!reaches_apex(e)) beta = own.curvature->beta(shape.shape, places, e.level);
+    return std::min(distance + residual, beta + off + 2 * residual) + least_beyond_;
+}
+
+/// The polynomial of a leaf at a corner of an element below it.
+double VirtualElements::own_value(const VirtualElement& e, const OwnNet& own,
+                                  std::size_t corner) const {
+    if (own.curvature == nullptr) {
+        return own.net[net_corner(own.degree, own.factors, own.number[corner])];
+    }
+    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
+    return net_value(records_->net(leaf), leaf.degree, leaf.factors(),
+                     collapsed(point_at(e.state->at[corner], e.level)));
 }
 
 /// The coefficients of component 0 of an element below a leaf. Boxes are halved on the way down;
 /// others are parts of the leaf, whose coefficients depend on their corners alone.
 auto VirtualElements::net_of(OpenTask& task, const VirtualElement& e) const -> OwnNet {
     const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    if (leaf.factors().all_segments() || e.level == 0) {
-        return {box_net_of(task, e), leaf.degree, {0, 1, 2, 3, 4, 5, 6, 7}};
+    if (leaf.shape == Shape::pyramid) return net_in_pyramid(task, e);
+    if (leaf.parts().is_box || e.level == 0) {
+        return {box_net_of(task, e), leaf.degree, {0, 1, 2, 3, 4, 5, 6, 7}, leaf.factors()};
     }
     const NetPart part =
         part_at(leaf.factors(), std::span(e.state->at).first(e.state->shape->corners), e.level);
     restrict_net(records_->net(leaf), leaf.degree, leaf.factors(), part, task.net.data());
-    return {task.net.data(), leaf.degree, part.number};
+    return {task.net.data(), leaf.degree, part.number, part.factors};
+}
+
+auto VirtualElements::net_in_pyramid(OpenTask& task, const VirtualElement& e) const -> OwnNet {
+    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
+    if (task.pyramid != e.leaf) {
+        task.curvature = PyramidCurvature(records_->net(leaf), leaf.degree);
+        task.pyramid = e.leaf;
+    }
+    const CollapsedBox around(std::span<const Place>(e.state->at).first(e.state->shape->corners),
+                              e.level);
+    around.restrict_net(records_->net(leaf), leaf.degree, task.net.data());
+    return {task.net.data(), leaf.degree, {0, 1, 2, 3, 4}, leaf.factors(), &task.curvature};
 }
 
 const double* VirtualElements::box_net_of(OpenTask& task, const VirtualElement& e) const {
@@ -162,7 +230,14 @@ void VirtualElements::leaf_values(OpenTask& task, const VirtualElement& e, std::
         return;
     }
     std::size_t first = 0;
-    if (leaf.factors().all_segments()) {
+    if (leaf.shape == Shape::pyramid) {
+        const Point inside = collapsed(point_at(at, e.level + 1));
+        for (std::size_t c = 0; c < components_; ++c) {
+            out[c] = net_value(records_->net(leaf, c), leaf.degree, leaf.factors(), inside);
+        }
+        return;
+    }
+    if (leaf.parts().is_box) {
         const ChildCorner in = shape.rule->new_corner[node];
         out[first++] =
             nets_of_children(task, e)[in.child * net_size(leaf.degree, leaf.factors()) +

@@ -92,7 +92,10 @@ void LeafRecords::add_leaf(Task* task, std::span<const BaseElement> way,
     const Factors& factors = e.shape->factors;
     thread_local std::map<std::pair<Shape, int>, std::vector<Point>> all_points;
     std::vector<Point>& points = all_points[{e.shape->shape, degree}];
-    if (points.empty()) points = net_points(degree, factors);
+    if (points.empty()) {
+        points =
+            e.shape->shape == Shape::pyramid ? pyramid_points(degree) : net_points(degree, factors);
+    }
     values.resize(points.size() * components_);
     base_->evaluate(task, e.member->element, points, values.data());
     LeafPolynomial leaf;
@@ -110,6 +113,11 @@ void LeafRecords::add_leaf(Task* task, std::span<const BaseElement> way,
             nets_.push_back(value);
         }
         to_coefficients(nets_.data() + at, degree, factors);
+        if (leaf.shape != Shape::pyramid) continue;
+        nets_.resize(at + leaf.size());
+        const double* const own = nets_.data() + at;
+        const double off = put_triangle_nets(own, degree, nets_.data() + at + points.size());
+        if (c == 0) leaf.jump = float_above(off);
     }
     const auto [lo, hi] =
         std::minmax_element(net(leaf), net(leaf) + static_cast<std::ptrdiff_t>(points.size()));
@@ -226,6 +234,17 @@ const Factors& LeafRecords::factors_of(const Record& record) const {
     return leaves_[record.leaf].parts().parts[record.part].factors;
 }
 
+/// Copies the coefficients on an edge or face of a leaf.
+void LeafRecords::take(const LeafPolynomial& leaf, std::size_t component,
+                       std::span<const Place> frame, const Factors& part, double* out) const {
+    const double* const own = net(leaf, component);
+    if (leaf.shape == Shape::pyramid) {
+        const double* const triangles = own + net_size(leaf.degree, leaf.factors());
+        return take_pyramid_part(own, triangles, leaf.degree, frame, part, out);
+    }
+    take_part(own, leaf.degree, leaf.factors(), frame, part, out);
+}
+
 /// Puts the coefficients of a record in its frame. \return its degree
 int LeafRecords::put_record(const OnRecord& at, std::size_t component, NetRoom& to) const {
     const Record& record = records_[static_cast<std::size_t>(at.record)];
@@ -233,8 +252,7 @@ int LeafRecords::put_record(const OnRecord& at, std::size_t component, NetRoom& 
     const ShapeParts& shape = owner.parts();
     const ShapePart& part = shape.parts[record.part];
     const std::array<Place, 3> frame = places_of(shape, record.corner);
-    take_part(net(owner, component), owner.degree, shape.factors,
-              std::span(frame).first(frame_size(part)), part.factors, to.data());
+    take(owner, component, std::span(frame).first(frame_size(part)), part.factors, to.data());
     return owner.degree;
 }
 
@@ -291,8 +309,7 @@ double LeafRecords::jump_on(const LeafPolynomial& leaf, std::size_t number) cons
     std::array<Place, 4> sorted{};
     for (std::size_t i = 0; i < part.count; ++i) sorted[there.number[i]] = corners[i];
     NetRoom own;
-    take_part(net(leaf), leaf.degree, shape.factors, std::span(sorted).first(frame_size(part)),
-              there.factors, own.data());
+    take(leaf, 0, std::span(sorted).first(frame_size(part)), there.factors, own.data());
     const int greatest = std::max(degree, int{leaf.degree});
     const auto a = elevated(own.data(), leaf.degree, there.factors, greatest);
     const auto b = elevated(other.data(), degree, there.factors, greatest);

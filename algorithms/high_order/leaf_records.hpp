@@ -18,6 +18,7 @@
 #include <tuple>
 
 #include <high_order/base_walk.hpp>
+#include <high_order/pyramid.hpp>
 #include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid::engine {
@@ -41,6 +42,11 @@ struct LeafPolynomial {
 
     const ShapeParts& parts() const { return parts_of(shape); }
     const Factors& factors() const { return parts().factors; }
+    /// Of the coefficients of one component, which in a pyramid are followed by its triangle nets.
+    std::size_t size() const {
+        const std::size_t triangles = shape == Shape::pyramid ? triangle_nets_size(degree) : 0;
+        return net_size(degree, factors()) + triangles;
+    }
 };
 
 class LeafRecords {
@@ -53,7 +59,7 @@ public:
     const std::vector<LeafPolynomial>& leaves() const { return leaves_; }
     std::size_t leaf_at(NodeKey path) const { return *leaf_of_.find(path); }
     const double* net(const LeafPolynomial& leaf, std::size_t component = 0) const {
-        return nets_.data() + leaf.net + component * net_size(leaf.degree, leaf.factors());
+        return nets_.data() + leaf.net + component * leaf.size();
     }
     /// Points on a part of a leaf. \param points at most 4, in units of 2^-level of the leaf
     OnRecord on_part(const LeafPolynomial& leaf, std::size_t part, std::span<const Place> points,
@@ -100,6 +106,8 @@ private:
     void add_leaf(Task* task, std::span<const BaseElement> way, std::vector<double>& values);
     void add_parts(std::span<const BaseElement> way, LeafPolynomial& leaf);
     double jump_on(const LeafPolynomial& leaf, std::size_t part) const;
+    void take(const LeafPolynomial& leaf, std::size_t component, std::span<const Place> frame,
+              const Factors& part, double* out) const;
     std::int32_t record_of(NodeKey key);
     const Factors& factors_of(const Record& record) const;
     int put_record(const OnRecord& at, std::size_t component, NetRoom& net) const;

@@ -41,7 +41,7 @@ struct Factors {
     }
 };
 
-/// \param shape not a pyramid, which is no product
+/// A pyramid is a box that is collapsed (pyramid.hpp).
 constexpr Factors factors_of(Shape shape) {
     switch (shape) {
         case Shape::segment:
@@ -55,9 +55,9 @@ constexpr Factors factors_of(Shape shape) {
         case Shape::prism:
             return {2, {2, 1}};
         case Shape::hexahedron:
+        case Shape::pyramid:
             return {3, {1, 1, 1}};
         case Shape::point:
-        case Shape::pyramid:
             break;
     }
     return {};

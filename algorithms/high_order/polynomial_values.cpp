@@ -33,8 +33,8 @@ public:
     void put_values(std::size_t i) {
         const LeafPolynomial& leaf = data_->records.leaves()[leaf_[i]];
         for (std::size_t c = 0; c < probed.components; ++c) {
-            probed.values[i * probed.components + c] = net_value(
-                data_->records.net(leaf, c), leaf.degree, leaf.factors(), probed.reference[i]);
+            probed.values[i * probed.components + c] =
+                net_value(data_->records.net(leaf, c), leaf.degree, leaf.factors(), place(i, leaf));
         }
     }
 
@@ -60,14 +60,22 @@ public:
     ProbeResult probed;
 
 private:
+    /// Where a point lies in the coordinates of the net.
+    Point place(std::size_t i, const LeafPolynomial& leaf) const {
+        const Point& at = probed.reference[i];
+        return leaf.shape == Shape::pyramid ? collapsed(at) : at;
+    }
     Point gradient(std::size_t i, const BaseElement& e) const {
         const LeafPolynomial& leaf = data_->records.leaves()[leaf_[i]];
         const Factors& factors = leaf.factors();
-        const Point& at = probed.reference[i];
+        Point at = place(i, leaf);
+        // The apex of a pyramid has no gradient: that of a point below.
+        if (leaf.shape == Shape::pyramid) at[2] = std::min(at[2], 1 - 1e-6);
         const Point inner = net_gradient(data_->records.net(leaf), leaf.degree, factors, at);
         std::array<Point, 3> along{};  // derivatives of the position
         for (std::size_t d = 0; d < 3; ++d) {
             std::array<double, max_corners> x{};
+            x.fill(e.x[e.shape->corners - 1][d]);  // the apex is four corners of the box
             for (std::size_t k = 0; k < e.shape->corners; ++k) {
                 x[net_corner(1, factors, k)] = e.x[k][d];
             }

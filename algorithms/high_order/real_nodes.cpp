@@ -203,15 +203,21 @@ private:
     /// On an element that stops, U differs from the interpolant of its true corner values by at
     /// most `below`, and those from P_S U by the offsets of the corners that S holds at: by at most
     /// `bound` in all. The triangles leave P_S U by twice its affine residual, which is that of the
-    /// true values, moved by at most 5 / 2 bound on boxes, 8 / 3 on prisms, and 0 on simplices.
-    /// Together that is 6 bound + 2 residual, or 19 / 3, or 1.
+    /// true values, moved by at most 5 / 2 bound on boxes, 8 / 3 on prisms, bound on pyramids, and
+    /// 0 on simplices. Together that is 6 bound + 2 residual, or 19 / 3, or 3, or 1.
     void put_stop(const Split& split) {
         const auto corners = static_cast<std::size_t>(split.rule->corner_count());
         std::array<double, max_corners> u;
         for (std::size_t k = 0; k < corners; ++k) u[k] = value(split.node[k]);
-        const Factors factors = factors_of(split.rule->parent);
-        const double share = factors.count == 1 ? 1 : factors.all_segments() ? 6 : 19.0 / 3;
-        const double residual = fit_affine(std::span(u).first(corners), factors).residual;
+        const Shape shape = split.rule->parent;
+        const Factors factors = factors_of(shape);
+        const bool pyramid = shape == Shape::pyramid;
+        const double share = pyramid                  ? 3
+                             : factors.count == 1     ? 1
+                             : factors.all_segments() ? 6
+                                                      : 19.0 / 3;
+        const double residual = pyramid ? pyramid_residual(u)
+                                        : fit_affine(std::span(u).first(corners), factors).residual;
         double below = 0;
         for (const std::uint32_t made : made_by(split)) {
             below = std::max(below, static_cast<double>(node(made).bound));

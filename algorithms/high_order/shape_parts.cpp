@@ -46,6 +46,7 @@ ShapeParts make_parts(Shape shape) {
     made.factors = factors_of(shape);
     made.dimension = t.dimension;
     made.corners = t.corners;
+    made.is_box = made.factors.all_segments() && shape != Shape::pyramid;
     made.rule = &red_rule(shape);
     for (std::size_t e = 0; e < t.edges; ++e) {
         made.parts.push_back(part_with(Shape::segment, t.edge[e]));
@@ -99,7 +100,7 @@ const ShapeParts& parts_of(Shape shape) {
     static const auto all = [] {
         std::array<ShapeParts, shape_count> made;
         for (const Shape s : {Shape::triangle, Shape::quadrilateral, Shape::tetrahedron,
-                              Shape::prism, Shape::hexahedron}) {
+                              Shape::pyramid, Shape::prism, Shape::hexahedron}) {
             made[static_cast<std::size_t>(s)] = make_parts(s);
         }
         return made;
@@ -150,8 +151,10 @@ bool divides_red(const Rule& rule) {
             if (rule.new_nodes[n].parent[i] >= rule.corner_count()) return false;
         }
     }
-    return std::all_of(rule.children.begin(), rule.children.end(),
-                       [&](const Child& child) { return child.shape == rule.parent; });
+    std::array<int, shape_count> shapes{};
+    for (const Child& child : rule.children) ++shapes[static_cast<std::size_t>(child.shape)];
+    for (const Child& child : red.children) --shapes[static_cast<std::size_t>(child.shape)];
+    return std::all_of(shapes.begin(), shapes.end(), [](int more) { return more == 0; });
 }
 
 std::uint8_t node_halving(const Rule& rule, const ShapePart& part) {

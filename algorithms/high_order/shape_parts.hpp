@@ -33,6 +33,7 @@ struct ShapeParts {
     Factors factors;
     std::size_t dimension = 0;
     std::size_t corners = 0;
+    bool is_box = false;
     const Rule* rule = nullptr;  ///< the red rule
     std::vector<ShapePart> parts;
     std::vector<Place> node;             ///< of the red rule, the corners first, in units of 1 / 2
@@ -57,11 +58,11 @@ private:
     std::array<std::int8_t, 1U << max_faces> part_in_{};
 };
 
-/// \param shape a product of simplices, of dimension 2 or 3
+/// \param shape of dimension 2 or 3
 const ShapeParts& parts_of(Shape shape);
 
-/// Whether a rule makes the nodes of the red rule of its shape, and children of the same shapes, in
-/// any order.
+/// Whether a rule makes the nodes of the red rule of its shape, and as many children of each shape,
+/// in any order.
 bool divides_red(const Rule& rule);
 /// The new node of such a rule that halves a part, or no_new_node.
 std::uint8_t node_halving(const Rule& rule, const ShapePart& part);

@@ -91,21 +91,27 @@ void VirtualElements::coarse(Task* task, std::size_t i, Coarse& coarse, Family& 
     std::array<double, max_corners> u{};
     for (std::size_t k = 0; k < state.shape->corners; ++k) {
         state.key[k] = coarse_key(coarse.ids[k]);
-        u[k] = nodes_->values(state.key[k])[0];
+        if (!linear_) u[k] = nodes_->values(state.key[k])[0];
     }
+    own.coarse = i;
+    own.key = state.key;
     VirtualElement e;
     e.state = &state;
     set_leaf(e, base, state);
     describe(own, e, u.data(), family, 0);
 }
 
-/// Values at the corners of a coarse element.
+/// Values at the corners of a coarse element, which as a rule was asked for just before.
 NodeMask VirtualElements::coarse_values(Task* task, std::size_t i, std::span<double> out) const {
     auto& own = static_cast<OpenTask&>(*task);
-    Coarse coarse;
-    data_->base->coarse(own.base.get(), i, coarse, own.family);
+    if (own.coarse != i) {
+        Coarse coarse;
+        data_->base->coarse(own.base.get(), i, coarse, own.family);
+        own.coarse = i;
+        std::transform(coarse.ids.begin(), coarse.ids.end(), own.key.begin(), coarse_key);
+    }
     for (std::size_t k = 0; k < out.size() / components_; ++k) {
-        const double* const values = nodes_->values(coarse_key(coarse.ids[k]));
+        const double* const values = nodes_->values(own.key[k]);
         std::copy_n(values, components_,
                     out.begin() + static_cast<std::ptrdiff_t>(k * components_));
     }
@@ -130,8 +136,7 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
         which = 0;
         const OwnNet net = divided ? OwnNet{} : net_of(own, e);
         for (std::size_t k = 0; k < corners; ++k) {
-            u[k] = divided ? nodes_->values(father.key[k])[0]
-                           : net.net[net_corner(net.degree, father.shape->factors, net.number[k])];
+            u[k] = divided ? nodes_->values(father.key[k])[0] : own_value(e, net, k);
         }
     }
     for (std::size_t n = 0; n < nodes; ++n) {
@@ -237,7 +242,7 @@ void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, con
     std::array<double, max_corners> sorted{};
     for (std::size_t k = 0; k < shape.corners; ++k) sorted[own.number[k]] = u[k];
     const auto corners = std::span<const double>(sorted).first(shape.corners);
-    const double error = drawn_error(own, shape.factors, looked.facts.beta, corners);
+    const double error = drawn_error(e, own, looked.facts.beta, corners);
     const double allowed = tolerance_ + static_cast<double>(leaf.jump);
     const bool exceeds = static_cast<double>(float_above(error)) > allowed;
     if (looked.all_flat && (!exceeds || e.level >= depth_)) {

@@ -96,15 +96,21 @@ private:
             std::vector<double> nets;  // of component 0, one child behind the other
         };
         std::unique_ptr<Task> base;
-        Family family;               // of a coarse element
-        std::vector<Halves> halves;  // by level of the element entered
-        NetRoom net;                 // of the element looked at last, where it is no box
+        Family family;                         // of a coarse element
+        std::size_t coarse = ~std::size_t{0};  // the one asked for last
+        CornerKeys key{};                      // of its corners
+        std::vector<Halves> halves;            // by level of the element entered
+        NetRoom net;                           // of the element looked at last, where it is no box
+        std::uint32_t pyramid = VirtualElement::no_leaf;  // the one looked into last
+        PyramidCurvature curvature;                       // of that
     };
-    /// The coefficients of component 0 on an element below a leaf.
+    /// The coefficients of component 0 on an element below a leaf; below a pyramid on a box around.
     struct OwnNet {
         const double* net;
         int degree;
         std::array<std::uint8_t, max_corners> number;  // of the corners, among those of the net
+        Factors factors;                               // of the net
+        const PyramidCurvature* curvature = nullptr;   // below a pyramid
     };
     /// What a leaf, or an element below it, looks like at the tolerance.
     struct Looked {
@@ -128,9 +134,13 @@ private:
     // One leaf and its parts (leaf_parts.cpp).
     Looked look(const VirtualElement& e, const OwnNet& own) const;
     bool is_flat(const NetFacts& facts, int level) const;
-    double drawn_error(const OwnNet& own, const Factors& factors, double beta,
+    double drawn_error(const VirtualElement& e, const OwnNet& own, double beta,
                        std::span<const double> u) const;
+    double drawn_error_in_pyramid(const VirtualElement& e, const OwnNet& own, double beta,
+                                  std::span<const double> u) const;
     OwnNet net_of(OpenTask& task, const VirtualElement& e) const;
+    OwnNet net_in_pyramid(OpenTask& task, const VirtualElement& e) const;
+    double own_value(const VirtualElement& e, const OwnNet& own, std::size_t corner) const;
     const double* box_net_of(OpenTask& task, const VirtualElement& e) const;
     const double* nets_of_children(OpenTask& task, const VirtualElement& e) const;
     void leaf_values(OpenTask& task, const VirtualElement& e, std::size_t node, double* out) const;

@@ -66,11 +66,11 @@ private:
 
 /// Finds the least and the greatest value of component 0, in a walk or in rows.
 template <class Real>
-class RangeVisitor final : public Visitor<Real> {
+class ValueRangeVisitor final : public Visitor<Real> {
 public:
     using View = ElementView<Real>;
 
-    explicit RangeVisitor(std::size_t components) : components_{components} {}
+    explicit ValueRangeVisitor(std::size_t components) : components_{components} {}
 
     Real range() const { return least_ < greatest_ ? greatest_ - least_ : 0; }
     /// Takes the values of all ranks. Collective.
@@ -111,7 +111,7 @@ private:
 /// 2^-20 of the range of component 0.
 template <class Real>
 double default_tau(const Hierarchy<Real>& hierarchy) {
-    RangeVisitor<Real> visitor(static_cast<std::size_t>(hierarchy.facts().components));
+    ValueRangeVisitor<Real> visitor(static_cast<std::size_t>(hierarchy.facts().components));
     const HierarchyFacts& facts = hierarchy.facts();
     if (facts.knows_stars && facts.components == 1 && !facts.offers(Feature::hidden)) {
         std::vector<Real> values;

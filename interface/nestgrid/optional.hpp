@@ -59,8 +59,8 @@
 //         random access, with for_each_star_row
 //     int degree(leaf)
 //         of the polynomials of the leaf, 1 to 8: in each direction on segments, quadrilaterals and
-//         hexahedra, in all on simplices, in the triangle and along the segment on prisms. 1: the
-//         values at its corners say all
+//         hexahedra, in all on simplices, in the triangle and along the segment on prisms, in each
+//         of x/(1-z), y/(1-z), z on pyramids. 1: the values at its corners say all
 //     void evaluate(leaf, std::span<const Point> reference, std::span<value_type> out)
 //         the field itself, all components, at points of the reference element (shape.hpp):
 //         component c of point n at out[n * components + c]. With degree(), neither without the

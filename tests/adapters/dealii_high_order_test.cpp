@@ -5,8 +5,10 @@
 #include <deal.II/base/function.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_system.h>
-#include <deal.II/fe/mapping_q1.h>
+#include <deal.II/fe/fe_wedge_p.h>
+#include <deal.II/fe/mapping.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/hp/fe_collection.h>
 #include <deal.II/lac/affine_constraints.h>
@@ -39,25 +41,34 @@ public:
     }
 };
 
-/// An interpolated function on a locally refined mesh, hanging nodes constrained.
+/// Each is refined, at random where deal.II has hanging nodes, but for the wedge.
+enum class Domain { cube, ball, simplices, wedge };
+
+/// An interpolated function on a mesh, hanging nodes constrained.
 template <int dim>
 struct Problem {
     dealii::Triangulation<dim> triangulation;
     dealii::DoFHandler<dim> dofs{triangulation};
     DoubleVector values;
 
-    Problem(const dealii::FiniteElement<dim>& fe, bool ball)
-        : Problem(dealii::hp::FECollection<dim>(fe), ball) {}
+    Problem(const dealii::FiniteElement<dim>& fe, Domain domain)
+        : Problem(dealii::hp::FECollection<dim>(fe), domain) {}
     /// Degrees at random, where there are several.
-    Problem(const dealii::hp::FECollection<dim>& elements, bool ball) {
-        if (ball) {
-            dealii::GridGenerator::hyper_ball(triangulation);
-        } else {
-            dealii::GridGenerator::hyper_cube(triangulation, -1, 1);
+    Problem(const dealii::hp::FECollection<dim>& elements, Domain domain) {
+        namespace make = dealii::GridGenerator;
+        if (domain == Domain::ball) make::hyper_ball(triangulation);
+        if (domain == Domain::cube) make::hyper_cube(triangulation, -1, 1);
+        if (domain == Domain::simplices) {
+            make::subdivided_hyper_cube_with_simplices(triangulation, 2, -1, 1);
         }
-        triangulation.refine_global(ball ? 1 : 2);
+        if (domain == Domain::wedge) {
+            make::reference_cell(triangulation, dealii::ReferenceCells::Wedge);
+        } else {
+            triangulation.refine_global(domain == Domain::cube ? 2 : 1);
+        }
         std::mt19937 random(3);
-        for (int step = 0; step < 2; ++step) {
+        const bool cubes = triangulation.all_reference_cells_are_hyper_cube();
+        for (int step = 0; cubes && step < 2; ++step) {
             for (const auto& cell : triangulation.active_cell_iterators()) {
                 if (random() % 10 < 3) cell->set_refine_flag();
             }
@@ -73,6 +84,7 @@ struct Problem {
         }
         values.reinit(dofs.n_dofs());
         interpolate();
+        if (!cubes) return;
         dealii::AffineConstraints<double> constraints;
         dealii::DoFTools::make_hanging_node_constraints(dofs, constraints);
         constraints.close();
@@ -89,8 +101,11 @@ struct Problem {
             for (unsigned i = 0; i < dof.size(); ++i) {
                 const auto [component, in_base] = fe.system_to_component_index(i);
                 const auto base = fe.system_to_base_index(i).first.first;
-                const auto x = dealii::MappingQ1<dim>().transform_unit_to_real_cell(
-                    cell, fe.base_element(base).unit_support_point(in_base));
+                const auto x =
+                    cell->reference_cell()
+                        .template get_default_linear_mapping<dim, dim>()
+                        .transform_unit_to_real_cell(
+                            cell, fe.base_element(base).get_unit_support_points()[in_base]);
                 values(dof[i]) = waves.value(x, component);
             }
         }
@@ -118,14 +133,35 @@ void expect_within(const Problem<dim>& problem, double tolerance) {
 TEST(DealiiHighOrder, SolutionsAreClosedAndWithinTheTolerance) {
     for (const unsigned degree : {2U, 3U, 4U, 6U}) {
         SCOPED_TRACE("degree " + std::to_string(degree));
-        expect_within(Problem<3>(dealii::FE_Q<3>(degree), false), 0.05);
-        expect_within(Problem<2>(dealii::FE_Q<2>(degree), false), 0.01);
+        expect_within(Problem<3>(dealii::FE_Q<3>(degree), Domain::cube), 0.05);
+        expect_within(Problem<2>(dealii::FE_Q<2>(degree), Domain::cube), 0.01);
     }
 }
 
 TEST(DealiiHighOrder, NodesOnManifoldsStayThere) {
-    expect_within(Problem<3>(dealii::FE_Q<3>(3), true), 0.05);
-    expect_within(Problem<2>(dealii::FE_Q<2>(3), true), 0.01);
+    expect_within(Problem<3>(dealii::FE_Q<3>(3), Domain::ball), 0.05);
+    expect_within(Problem<2>(dealii::FE_Q<2>(3), Domain::ball), 0.01);
+}
+
+TEST(DealiiHighOrder, SimplicesAndWedgesAreDrawn) {
+    expect_within(Problem<3>(dealii::FE_SimplexP<3>(2), Domain::simplices), 0.05);
+    expect_within(Problem<2>(dealii::FE_SimplexP<2>(2), Domain::simplices), 0.01);
+    expect_within(Problem<3>(dealii::FE_WedgeP<3>(2), Domain::wedge), 0.01);
+}
+
+/// Degrees meet on faces of simplices without constraints.
+TEST(DealiiHighOrder, DegreesOfSimplicesMayDiffer) {
+    const dealii::hp::FECollection<3> elements(dealii::FE_SimplexP<3>(1),
+                                               dealii::FE_SimplexP<3>(2));
+    const Problem<3> problem(elements, Domain::simplices);
+    const DealiiGrid<3> grid(problem.triangulation);
+    const DealiiField<3, DoubleVector> field(grid, problem.dofs, problem.values);
+    const HighOrder data(grid, field);
+    EXPECT_GT(data.jump(), 0.01);
+    const VirtualRefinement fine(data, {.tolerance = 0.05});
+    const auto result = isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds(), {.verify = true});
+    expect_closed(result.surface);
+    EXPECT_LE(result.error_bound, (0.05 + data.jump()) * (1 + 1e-6));
 }
 
 /// Elements of several degrees jump where these meet, by deal.II's own shape functions.
@@ -133,7 +169,7 @@ template <int dim>
 void expect_closed_hp(double tolerance) {
     dealii::hp::FECollection<dim> elements;
     for (unsigned degree = 2; degree <= 6; ++degree) elements.push_back(dealii::FE_Q<dim>(degree));
-    const Problem<dim> problem(elements, false);
+    const Problem<dim> problem(elements, Domain::cube);
     const DealiiGrid<dim> grid(problem.triangulation);
     const DealiiField<dim, DoubleVector> field(grid, problem.dofs, problem.values);
     const auto violation = check_grid(grid, field);
@@ -155,7 +191,7 @@ TEST(DealiiHighOrder, DegreesMayDifferFromCellToCell) {
 
 TEST(DealiiHighOrder, ComponentsOfSystemsAreToldApart) {
     const Problem<3> problem(dealii::FESystem<3>(dealii::FE_Q<3>(4), 1, dealii::FE_Q<3>(2), 1),
-                             false);
+                             Domain::cube);
     const DealiiGrid<3> grid(problem.triangulation);
     const DealiiField<3, DoubleVector, 2> field(grid, problem.dofs, problem.values, {0, 1});
     EXPECT_FALSE(check_grid(grid, field).has_value());

@@ -16,8 +16,10 @@
 #include <vtkLagrangeWedge.h>
 #include <vtkNew.h>
 #include <vtkPixel.h>
+#include <vtkPyramid.h>
 #include <vtkQuad.h>
 #include <vtkQuadraticHexahedron.h>
+#include <vtkQuadraticPyramid.h>
 #include <vtkQuadraticQuad.h>
 #include <vtkQuadraticTetra.h>
 #include <vtkQuadraticTriangle.h>
@@ -27,6 +29,8 @@
 
 #include <nestgrid/adapters/vtk_cells.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
+#include <nestgrid/algorithms/polynomial_values.hpp>
+#include <nestgrid/check_grid.hpp>
 
 #include "closedness.hpp"
 #include "lagrange_meshes.hpp"
@@ -85,7 +89,12 @@ void expect_shape_functions_of(std::size_t points, int degree) {
     }
     if constexpr (requires { cell->Initialize(); }) cell->Initialize();
     const double* const places = cell->GetParametricCoords();
-    const Mesh mesh{.coordinates = {places, places + 3 * points},
+    std::vector<double> coordinates(places, places + 3 * points);
+    const bool in_box = cell->GetCellType() == 14 || cell->GetCellType() == 27;
+    for (std::size_t i = 0; in_box && i < points; ++i) {  // of a pyramid, as x and y below
+        for (std::size_t d = 0; d < 2; ++d) coordinates[3 * i + d] *= 1 - coordinates[3 * i + 2];
+    }
+    const Mesh mesh{.coordinates = coordinates,
                     .types = {std::uint8_t(cell->GetCellType())},
                     .first = {0, std::int64_t(points)},
                     .points = numbers_to(points)};
@@ -100,12 +109,17 @@ void expect_shape_functions_of(std::size_t points, int degree) {
     for (int sample = 0; sample < 50; ++sample) {
         std::array<double, 3> x{uniform(random), uniform(random), dim == 3 ? uniform(random) : 0};
         const Shape shape = grid.kind(0).shape;
-        if (shape != Shape::quadrilateral && shape != Shape::hexahedron) {
+        const std::array<double, 3> parametric = x;
+        if (shape == Shape::pyramid) {  // VTK's coordinates of pyramids are those of a box
+            x[0] *= 1 - x[2];
+            x[1] *= 1 - x[2];
+        } else if (shape != Shape::quadrilateral && shape != Shape::hexahedron) {
             x[1] *= 1 - x[0];
             if (shape == Shape::tetrahedron) x[2] *= 1 - x[0] - x[1];
         }
         std::vector<double> weights(points);
-        cell->InterpolateFunctions(x.data(), weights.data());
+        cell->InterpolateFunctions((shape == Shape::pyramid ? parametric : x).data(),
+                                   weights.data());
         double expected = 0;
         for (std::size_t i = 0; i < points; ++i) expected += weights[i] * values[i];
         std::array<double, 1> found{};
@@ -129,6 +143,8 @@ TEST(Lagrange, PolynomialsAreThoseOfVtk) {
     expect_shape_functions_of<3, vtkQuadraticTetra>(10, 2);
     expect_shape_functions_of<3, vtkQuadraticWedge>(15, 2);
     expect_shape_functions_of<3, vtkBiQuadraticQuadraticWedge>(18, 2);
+    expect_shape_functions_of<3, vtkPyramid>(5, 1);
+    expect_shape_functions_of<3, vtkQuadraticPyramid>(13, 2);
     for (std::size_t p = 1; p <= max_degree; ++p) {
         expect_shape_functions_of<2, vtkLagrangeTriangle>((p + 1) * (p + 2) / 2, int(p));
         expect_shape_functions_of<3, vtkLagrangeTetra>((p + 1) * (p + 2) * (p + 3) / 6, int(p));
@@ -177,6 +193,64 @@ TEST(Lagrange, PointsMayBeSharedOrEachCellsOwn) {
     for (const int p : {2, 3, 5}) {
         expect_one_surface<2>(p);
         expect_one_surface<3>(p);
+    }
+}
+
+/// A cube of six quadratic pyramids beside a quadratic hexahedron.
+Mesh quadratic_pyramids() {
+    Mesh mesh = lagrange_box(3, 1, 2, {.offset = {1, 0, 0}});
+    mesh.types = {25};
+    mesh.points.resize(20);
+    mesh.first = {0, 20};
+    for (std::size_t face = 0; face < 6; ++face) {
+        std::array<Point, 5> corner;
+        for (std::size_t k = 0; k < 4; ++k) {
+            corner[k][face / 2] = face % 2 == 0 ? 0 : 1;
+            corner[k][(face / 2 + 1) % 3] = k == 1 || k == 2 ? 1 : 0;
+            corner[k][(face / 2 + 2) % 3] = k > 1 ? 1 : 0;
+        }
+        corner[4] = {0.5, 0.5, 0.5};
+        std::vector<Point> points(corner.begin(), corner.end());
+        for (std::size_t k = 0; k < 4; ++k) {
+            points.push_back(0.5 * (corner[k] + corner[(k + 1) % 4]));
+        }
+        for (std::size_t k = 0; k < 4; ++k) points.push_back(0.5 * (corner[k] + corner[4]));
+        Mesh pyramid{.types = {27}, .first = {0, 13}, .points = numbers_to(13)};
+        for (const Point& x : points) {
+            pyramid.coordinates.insert(pyramid.coordinates.end(), x.begin(), x.end());
+        }
+        mesh.append(pyramid);
+    }
+    return mesh;
+}
+
+TEST(Lagrange, QuadraticPyramidsMeetHexahedra) {
+    const auto mesh = quadratic_pyramids();
+    const LagrangeGrid<3> grid(mesh.arrays());
+    EXPECT_EQ(grid.greatest_degree(), 2);
+    EXPECT_EQ(grid.curved().count, 0U);
+    const std::vector<double> values = mesh.sampled([](const Point& x) {
+        return x[0] * x[0] + x[1] * x[1] + 2 * x[2] * x[2] + std::sin(3 * x[0] * x[1] * x[2]);
+    });
+    const LagrangeField<3> field(grid, values);
+    const auto violation = check_grid(grid, field);
+    EXPECT_FALSE(violation.has_value()) << (violation ? violation->sentence : "");
+    const HighOrder data(grid, field);
+    EXPECT_LE(data.jump(), 1e-12);
+    const VirtualRefinement fine(data, {.tolerance = 0.02});
+    const auto result = isosurface<3>(fine, 1.4, fine.criterion(), fine.bounds(), {.verify = true});
+    EXPECT_GT(result.surface.simplices.size(), 100U);
+    expect_closed(result.surface);
+    EXPECT_LE(result.error_bound, 0.02);
+    std::vector<Point> middles;
+    for (const auto& simplex : result.surface.simplices) {
+        Point& middle = middles.emplace_back(Point{0, 0, 0});
+        for (const auto v : simplex) middle = middle + (1.0 / 3) * result.surface.vertices[v];
+    }
+    const ProbeResult found = probe(data, middles);
+    for (std::size_t i = 0; i < middles.size(); ++i) {
+        ASSERT_TRUE(found.found(i));
+        EXPECT_LE(std::abs(found.values[i] - 1.4), result.error_bound + 1e-6);
     }
 }
 
@@ -248,7 +322,7 @@ TEST(Lagrange, RefusalsNameTheCell) {
     pyramid.coordinates.resize(42);
     pyramid.first = {0, 14};
     pyramid.points = numbers_to(14);
-    expect_mesh_refused(pyramid, "cell 0, a Lagrange pyramid, has degree 2; pyramids of degree 1");
+    expect_mesh_refused(pyramid, "cell 0, a Lagrange pyramid, has degree 2; of pyramids linear");
     expect_mesh_refused(Mesh{}, "there are no cells");
     expect_mesh_refused(beside_halves(3), "a face of cell 0 is divided on its other side");
     expect_mesh_refused<2>(beside_halves(2), "a face of cell 0 is divided");

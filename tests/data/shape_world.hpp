@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Grids of triangles, tetrahedra, prisms and boxes, side by side, whose leaves have polynomials of
-// degrees of their own: corners in any order, unbalanced red refinement with any inner diagonals,
-// any degrees, jumps where they are asked for. As degree_world.hpp, which is for boxes alone.
+// Grids of triangles, tetrahedra, prisms, pyramids and boxes, side by side, whose leaves have
+// polynomials of degrees of their own: corners in any order, unbalanced red refinement with any
+// inner diagonals, any degrees, jumps where they are asked for. As degree_world.hpp, which is for
+// boxes alone.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <optional>
 
 #include "degree_world.hpp"
+#include "pyramid_functions.hpp"
 
 namespace nestgrid_test {
 
@@ -23,16 +25,28 @@ enum class Cells : std::uint8_t {
     prisms,      ///< two prisms each
     columns,     ///< boxes, or triangles and prisms, at random
     all,         ///< columns below; tetrahedra above prisms, and nothing above hexahedra
+    pyramids,    ///< boxes, or six pyramids around the middle, at random; those on the boundary of
+                 ///< the domain are pyramids or two tetrahedra
     one_simplex  ///< one triangle or tetrahedron alone
 };
 
-/// Polynomial on a product of simplices, by its values on the principal lattice.
+/// Polynomial on a product of simplices, or a function of PyramidFunctions, by its values on the
+/// principal lattice.
 class LatticePolynomial {
 public:
     LatticePolynomial() = default;
     LatticePolynomial(Shape shape, int degree, const std::function<double(const Point&)>& f)
         : degree_{degree} {
         switch (shape) {
+            case Shape::pyramid: {
+                pyramid_ = &PyramidFunctions::of(degree);
+                for (const auto& [i, j, k] : pyramid_->places()) {
+                    const double p = degree;
+                    values_.push_back(f({i / p, j / p, k / p}));
+                }
+                values_ = pyramid_->factors(values_);
+                return;
+            }
             case Shape::triangle:
                 factors_ = {2};
                 break;
@@ -54,6 +68,10 @@ public:
     int degree() const { return degree_; }
     double operator()(const Point& x) const {
         double sum = 0;
+        if (pyramid_ != nullptr) {
+            const std::vector<double> at = pyramid_->values(x);
+            return std::inner_product(at.begin(), at.end(), values_.begin(), 0.0);
+        }
         for (std::size_t i = 0; i < values_.size(); ++i) {
             double weight = values_[i];
             for (std::size_t d = 0, axis = 0; d < factors_.size(); ++d) {
@@ -98,6 +116,7 @@ private:
     }
 
     int degree_ = 1;
+    const PyramidFunctions* pyramid_ = nullptr;
     std::vector<std::size_t> factors_;
     std::vector<std::array<int, 3>> points_;
     std::vector<double> values_;
@@ -119,7 +138,7 @@ public:
         std::vector<bool> boxes(n * n);
         for (std::size_t i = 0; i < n * n; ++i) {
             const bool box_here = random() % 2 == 0;
-            if (cells == Cells::columns) boxes[i] = box_here;
+            if (cells == Cells::columns || cells == Cells::pyramids) boxes[i] = box_here;
             // Whole rows, so that cells above do not touch in an edge alone.
             if (cells == Cells::all) boxes[i] = i % n == 0 ? box_here : boxes[i - 1];
         }
@@ -128,8 +147,10 @@ public:
                 const Vertex low{i % n, i / n, k};
                 const bool above = cells == Cells::all && 2 * k >= n;
                 if (above && boxes[i]) continue;
-                if (boxes[i]) {
+                if (boxes[cells == Cells::pyramids ? (i + k) % (n * n) : i]) {
                     add_coarse(box, std::span(&low, 1), random);
+                } else if (cells == Cells::pyramids) {
+                    add_pyramids(low, random);
                 } else if (dim == 3 && (cells == Cells::simplices || above)) {
                     add_tetrahedra(low, random);
                 } else {
@@ -158,9 +179,9 @@ public:
             c.corners[k] = cell.corner[k];
             c.ids[k] = 0;
             for (std::size_t d = dim; d-- > 0;) {
-                c.ids[k] = c.ids[k] * (options_.cells + 1) +
+                c.ids[k] = c.ids[k] * (2 * options_.cells + 1) +
                            static_cast<std::uint64_t>(
-                               std::llround((cell.corner[k][d] + 1) / 2 * double(options_.cells)));
+                               std::llround((cell.corner[k][d] + 1) * double(options_.cells)));
             }
         }
         const auto corners = std::span(c.corners).first(count);
@@ -230,13 +251,50 @@ private:
         }
         Cell cell{shape, 0, {}, nullptr, 0, {}};
         for (const Vertex& vertex : all) {
-            Point x{0, 0, 0};
-            for (std::size_t d = 0; d < dim; ++d) {
-                x[d] = -1 + 2 * double(vertex[d]) / double(options_.cells);
-            }
-            cell.corner.push_back(x);
+            cell.corner.push_back(
+                position({double(vertex[0]), double(vertex[1]), double(vertex[2])}));
         }
         cells_.push_back(cell);
+    }
+    /// \param x in units of coarse cells
+    Point position(const Point& x) const {
+        Point at{0, 0, 0};
+        for (std::size_t d = 0; d < dim; ++d) at[d] = -1 + 2 * x[d] / double(options_.cells);
+        return at;
+    }
+    /// The six pyramids of a cell, bases in any order of corners.
+    void add_pyramids(const Vertex& low, std::mt19937& random) {
+        const Point middle =
+            position({double(low[0]) + 0.5, double(low[1]) + 0.5, double(low[2]) + 0.5});
+        for (std::size_t face = 0; face < 6; ++face) {
+            const std::size_t across = face / 2;
+            std::array<std::size_t, 2> along{(across + 1) % 3, (across + 2) % 3};
+            if (random() % 2 == 0) std::swap(along[0], along[1]);
+            const auto flip = static_cast<std::size_t>(random() % 4);
+            std::vector<Point> corner;
+            for (std::size_t k = 0; k < 4; ++k) {
+                Vertex vertex = low;
+                vertex[across] += face % 2;
+                vertex[along[0]] += (k ^ flip) & 1U;
+                vertex[along[1]] += (k ^ flip) >> 1U;
+                corner.push_back(
+                    position({double(vertex[0]), double(vertex[1]), double(vertex[2])}));
+            }
+            const std::size_t end = face % 2 == 0 ? 0 : options_.cells - 1;
+            if (low[across] == end && random() % 3 == 0) {
+                for (const std::size_t k : {std::size_t{0}, std::size_t{3}}) {
+                    cells_.push_back({Shape::tetrahedron,
+                                      0,
+                                      {middle, corner[k], corner[1], corner[2]},
+                                      nullptr,
+                                      0,
+                                      {}});
+                }
+                continue;
+            }
+            corner.push_back(middle);
+            cells_.push_back({Shape::pyramid, 0, corner, nullptr, 0, {}});
+        }
     }
     void add_tetrahedra(const Vertex& low, std::mt19937& random) {
         std::array<std::size_t, 3> order{0, 1, 2};
@@ -367,6 +425,7 @@ private:
         if (triangle) least = std::min(least, 1 - t[0] - t[1]);
         if (cell.shape == Shape::prism) least = std::min(least, 1 - t[2]);
         if (cell.shape == Shape::tetrahedron) least = std::min(least, 1 - t[0] - t[1] - t[2]);
+        if (cell.shape == Shape::pyramid) least = std::min(least, 1 - t[2] - std::max(t[0], t[1]));
         for (std::size_t d = 0; cell.shape == box && d < dim; ++d)
             least = std::min(least, 1 - t[d]);
         return least;

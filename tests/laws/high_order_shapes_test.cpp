@@ -75,6 +75,9 @@ TEST(HighOrderShapes, PrismsBesideHexahedraAreClosedAndWithinTheirBounds) {
 TEST(HighOrderShapes, AllShapesTogetherAreClosedAndWithinTheirBounds) {
     expect_closed_worlds<3>(Cells::all, count_of_shape_worlds() / 2);
 }
+TEST(HighOrderShapes, PyramidsAreClosedAndWithinTheirBounds) {
+    expect_closed_worlds<3>(Cells::pyramids, count_of_shape_worlds() / 4);
+}
 TEST(HighOrderShapes, TrianglesAreClosedAndWithinTheirBounds) {
     expect_closed_worlds<2>(Cells::simplices, count_of_shape_worlds());
 }
@@ -155,7 +158,7 @@ TEST(HighOrderShapes, EveryAlgorithmDraws) {
 }
 
 TEST(HighOrderShapes, NormalsOfASphereAreExact) {
-    for (const Cells cells : {Cells::simplices, Cells::prisms, Cells::all}) {
+    for (const Cells cells : {Cells::simplices, Cells::prisms, Cells::all, Cells::pyramids}) {
         const OnShapes<3> drawn(
             cells, WorldOptions{.levels = 1, .least_degree = 2, .greatest_degree = 3}, square<3>);
         Surface<3> surface = drawn.surface(0.5, {0.1, 5}, {.normals = true}).surface;
@@ -218,7 +221,7 @@ TEST(HighOrderShapes, ColoursOfVerticesAreThePolynomials) {
 
 /// Linear data are drawn as without virtual refinement, to the last bit.
 TEST(HighOrderShapes, DegreeOneIsTheHierarchyItself) {
-    for (const Cells cells : {Cells::simplices, Cells::prisms, Cells::all}) {
+    for (const Cells cells : {Cells::simplices, Cells::prisms, Cells::all, Cells::pyramids}) {
         const OnShapes<3> drawn(
             cells, WorldOptions{.cells = 2, .least_degree = 1, .greatest_degree = 1}, gyroid);
         const VirtualRefinement fine(drawn.data, {.tolerance = 1e-6});

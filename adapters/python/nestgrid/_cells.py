@@ -22,7 +22,7 @@ class Cells(Field):
     points        (n, 3): coordinates. Cells share points or have their own: corners at one place
                   are one node
     types         (m,): of the cells, by VTK's numbers: linear, quadratic and Lagrange ones of
-                  degrees to 8; above degree 1 no pyramids are drawn
+                  degrees to 8; of pyramids linear and quadratic ones
     offsets       (m + 1,): where the points of each cell begin in connectivity, and the end
     connectivity  the points of all cells, in VTK's order
     values        (n,): at the points

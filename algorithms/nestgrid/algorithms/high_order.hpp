@@ -5,7 +5,7 @@
 //     const HighOrder data(grid, field);                            once per solution
 //     const VirtualRefinement fine(data, {.tolerance = 1e-3});
 //     isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds());
-// For all shapes but pyramids, straight and divided by red_rule(); the field has degree() and
+// For all shapes, straight and divided by red_rule(); the field has degree() and
 // evaluate() (optional.hpp). The tolerance is one of component 0. docs/high_order.md.
 #pragma once
 

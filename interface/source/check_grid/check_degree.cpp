@@ -23,8 +23,10 @@ double highest_difference(std::span<const double> values) {
     return left[0];
 }
 
-/// How long a line along an axis may be from a point with this coordinate 0 on.
+/// How long a line along an axis may be from a point with this coordinate 0 on. In a pyramid, whose
+/// functions are polynomials on lines to the apex, that along axis 2 is one.
 double length_inside(Shape shape, const Point& from, std::size_t axis) {
+    if (shape == Shape::pyramid) return axis < 2 ? 1 - from[2] : 1;
     const bool in_triangle = shape == Shape::triangle || (shape == Shape::prism && axis < 2);
     if (in_triangle) return 1 - from[1 - axis];
     if (shape == Shape::tetrahedron) return 1 - from[0] - from[1] - from[2];
@@ -34,8 +36,7 @@ double length_inside(Shape shape, const Point& from, std::size_t axis) {
 }  // namespace
 
 /// Of a field that tells degrees: compares what it says of a leaf with the values at its corners,
-/// and with polynomials of that degree. Pyramids, whose shape functions are rational, have
-/// corners only.
+/// and with polynomials of that degree.
 void GridChecker::check_degree(const State& leaf) {
     if (!hierarchy_->offers(Feature::degree)) return;
     const int degree = hierarchy_->degree(task_.get(), leaf.member->element);
@@ -44,7 +45,6 @@ void GridChecker::check_degree(const State& leaf) {
                               ", not 1 to " + std::to_string(max_degree));
     }
     check_corner_values(leaf);
-    if (leaf.shape == Shape::pyramid) return;
     for (std::size_t axis = 0; axis < topology(leaf.shape).dimension; ++axis) {
         for (const Point& through : {Point{0.15, 0.25, 0.3}, Point{0.35, 0.1, 0.2}}) {
             Point from = through;
@@ -80,7 +80,10 @@ void GridChecker::check_line(const State& leaf, int degree, Point from, std::siz
                              double length) {
     std::vector<Point> points(static_cast<std::size_t>(degree) + 2, from);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        points[i][axis] = length * static_cast<double>(i) / (degree + 1);
+        const double along = length * static_cast<double>(i) / (degree + 1);
+        points[i][axis] = along;
+        if (leaf.shape != Shape::pyramid || axis < 2) continue;
+        for (std::size_t d = 0; d < 2; ++d) points[i][d] *= 1 - along;
     }
     std::vector<double> values(points.size() * components_);
     hierarchy_->evaluate(task_.get(), leaf.member->element, points, values.data());

@@ -180,6 +180,11 @@ inline std::array<double, max_degree + 1> simplex_factors(int degree, double x) 
 /// \param node called with the number of a node, i first
 template <class Value, class Node>
 Value lattice_polynomial(Shape shape, int degree, const Point& x, const Node& node) {
+    if (shape == Shape::pyramid) {
+        const double width = 1 - x[2];
+        const Point in_box = width > 0 ? Point{x[0] / width, x[1] / width, x[2]} : Point{0, 0, 1};
+        return lattice_polynomial<Value>(Shape::hexahedron, degree, in_box, node);
+    }
     const bool box = is_box(shape);
     const bool plane = topology(shape).dimension == 2;
     const bool tetrahedron = shape == Shape::tetrahedron;
@@ -321,8 +326,11 @@ void LagrangeGrid<dim>::look_at_places(const CellArrays& cells, Element cell) {
         }
         const auto [i, j, k] = kind.nodes[n].at;
         const double p = kind.degree;
+        const double width = kind.shape == Shape::pyramid ? 1 - k / p : 1;
         const auto straight = detail::lattice_polynomial<Point>(
-            kind.shape, 1, {i / p, j / p, k / p}, [&](std::size_t c) { return corners[c]; });
+            kind.shape, 1, {i / p * width, j / p * width, k / p}, [&](std::size_t c) {
+                return corners[std::min(c, topology(kind.shape).corners - std::size_t{1})];
+            });
         off = std::max(off, norm(x - straight));
     }
     if (off <= 4 * rounding_) return;

@@ -8,7 +8,8 @@
 // element (shape.hpp), with i + j <= p in triangles and prisms, i + j + k <= p in tetrahedra, i
 // first. Points of a cell are such nodes in an order of VTK's own (lagrange_order.hpp). Quadratic
 // cells have the first points of a Lagrange cell of degree 2; nodes without a point are blends of
-// those around, as in their own shape functions.
+// those around, as in their own shape functions. A pyramid has the nodes of a hexahedron whose
+// upper face is collapsed to the apex: in x / (1 - z), y / (1 - z) and z its functions are those.
 //
 // A type that the library learns to draw is a row in the table of cell_types().
 #pragma once
@@ -88,6 +89,7 @@ inline constexpr std::array cell_types{
     CellType{24, "quadratic tetrahedron", Shape::tetrahedron, 2, 10},
     CellType{25, "quadratic hexahedron", Shape::hexahedron, 2, 20},
     CellType{26, "quadratic wedge", Shape::prism, 2, 15},
+    CellType{27, "quadratic pyramid", Shape::pyramid, 2, 13},
     CellType{28, "biquadratic quadrilateral", Shape::quadrilateral, 2, 9},
     CellType{29, "triquadratic hexahedron", Shape::hexahedron, 2, 27},
     CellType{32, "biquadratic quadratic wedge", Shape::prism, 2, 18},
@@ -136,6 +138,55 @@ inline CellNode quadratic_node(Shape shape, const LatticePlace& at, std::size_t 
     return node;
 }
 
+/// The nodes of a pyramid of degree 1 or 2, of 5 or 13 points.
+inline std::vector<CellNode> pyramid_nodes(int degree) {
+    std::vector<CellNode> nodes;
+    for (const LatticePlace& at : lattice(Shape::hexahedron, degree)) {
+        CellNode& node = nodes.emplace_back(CellNode{at, {}});
+        const auto [i, j, k] = at;
+        if (k == degree) {
+            node.parts = {{4, 1.0}};
+            continue;
+        }
+        // Corners and middles of the base run around it, edges to the apex as the corners.
+        const auto corner = [](int x, int y) {
+            return x != 0 ? (y != 0 ? 2 : 1) : (y != 0 ? 3 : 0);
+        };
+        const auto add = [&](int point, double weight) {
+            node.parts.push_back({static_cast<std::uint16_t>(point), weight});
+        };
+        if (i % degree == 0 && j % degree == 0) {
+            add(corner(i, j) + (k == 1 ? 9 : 0), 1);
+            continue;
+        }
+        // Inside a triangle, a square or the pyramid: all points around, each kind with one weight.
+        for (int side = 0; side < 4; ++side) {
+            const std::array<bool, 4> on{j == 0, i == 2, j == 2, i == 0};
+            const bool in_plane = (i == 1 && j == 1) || on[static_cast<std::size_t>(side)];
+            if (!in_plane) continue;
+            const bool inside = i == 1 && j == 1;
+            const int next = (side + 1) % 4;
+            if (k == 0 && !inside) {
+                add(5 + side, 1);
+            } else if (k == 0) {
+                add(side, -0.25);
+                add(5 + side, 0.5);
+            } else if (inside) {
+                add(side, -0.25);
+                add(5 + side, 0.25);
+                add(9 + side, 0.25);
+            } else {
+                add(side, -0.125);
+                add(next, -0.125);
+                add(5 + side, 0.25);
+                add(9 + side, 0.5);
+                add(9 + next, 0.5);
+            }
+        }
+    }
+    return nodes;
+}
+
 /// The point at each corner of a linear cell.
 inline std::array<std::uint8_t, max_corners> corner_points(const CellType& type) {
     std::array<std::uint8_t, max_corners> corner{0, 1, 2, 3, 4, 5, 6, 7};
@@ -147,6 +198,10 @@ inline std::array<std::uint8_t, max_corners> corner_points(const CellType& type)
 
 inline CellKind make_kind(const CellType& type, int degree, std::size_t points) {
     CellKind kind{type.shape, degree, {}, corner_points(type)};
+    if (type.shape == Shape::pyramid) {
+        kind.nodes = pyramid_nodes(degree);
+        return kind;
+    }
     if (degree == 1) {
         for (std::size_t k = 0; k < points; ++k) {
             kind.nodes.push_back({{}, {{kind.corner[k], 1.0}}});
@@ -232,9 +287,9 @@ private:
             throw InvalidInput(described + " has degree " + std::to_string(degree) +
                                "; degrees to " + std::to_string(max_degree) + " are drawn");
         }
-        if (degree > 1 && type->shape == Shape::pyramid) {
+        if (degree > 1 && type->shape == Shape::pyramid && type->degree == 0) {
             throw InvalidInput(described + " has degree " + std::to_string(degree) +
-                               "; pyramids of degree 1 are drawn");
+                               "; of pyramids linear and quadratic ones are drawn");
         }
         return detail::make_kind(*type, degree, points);
     }
