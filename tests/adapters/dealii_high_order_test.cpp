@@ -159,7 +159,8 @@ TEST(DealiiHighOrder, DegreesOfSimplicesMayDiffer) {
     const HighOrder data(grid, field);
     EXPECT_GT(data.jump(), 0.01);
     const VirtualRefinement fine(data, {.tolerance = 0.05});
-    const auto result = isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds(), {.verify = true});
+    const auto result =
+        isosurface<3>(fine, 0.3, under(fine.criterion(), fine.bounds()), {.verify = true});
     expect_closed(result.surface);
     EXPECT_LE(result.error_bound, (0.05 + data.jump()) * (1 + 1e-6));
 }

@@ -238,7 +238,8 @@ TEST(Lagrange, QuadraticPyramidsMeetHexahedra) {
     const HighOrder data(grid, field);
     EXPECT_LE(data.jump(), 1e-12);
     const VirtualRefinement fine(data, {.tolerance = 0.02});
-    const auto result = isosurface<3>(fine, 1.4, fine.criterion(), fine.bounds(), {.verify = true});
+    const auto result =
+        isosurface<3>(fine, 1.4, under(fine.criterion(), fine.bounds()), {.verify = true});
     EXPECT_GT(result.surface.simplices.size(), 100U);
     expect_closed(result.surface);
     EXPECT_LE(result.error_bound, 0.02);
