@@ -66,9 +66,10 @@ void join_lines(Surface<2>& segments, std::span<const std::array<NodeKey, 2>> na
     const std::vector<std::uint32_t> part = parts_of(segments);
     const ConnectedParts wholes(
         ranks, copies, [](std::uint32_t) { return true; }, part);
-    std::uint64_t attributes =
+    std::uint64_t most =
         segments.vertices.empty() ? 0 : segments.attributes.size() / segments.vertices.size();
-    ranks.reduce(std::span(&attributes, 1), Ranks::Reduction::max);
+    ranks.reduce(std::span(&most, 1), Ranks::Reduction::max);
+    const auto attributes = static_cast<std::size_t>(most);
     Outbox box(ranks.size());
     for (const auto& segment : segments.simplices) {
         const int* const rank = wholes.least_rank(part[segment[0]]);

@@ -76,7 +76,7 @@ struct SimplexBatch {
 };
 
 /// Takes triangles (segments) in parts while they are extracted, without connections between
-/// elements; nothing else is kept.
+/// elements; nothing is kept but what coarse elements beside finer ones are drawn from.
 template <int dimension>
 class SimplexSink {
 public:
