@@ -232,6 +232,28 @@ void expect_fits(const Result& drawn, std::uint64_t most) {
     EXPECT_LE(drawn.collapsed->error, drawn.search.threshold);
 }
 
+/// A criterion in the place of a threshold, kept or borrowed.
+TYPED_TEST(Drawing, TakesACriterionOfOnesOwn) {
+    for_each_drawn<TypeParam>(46, [](const auto& hierarchy, Prerolls& prerolls, auto dimension) {
+        const HierarchicalIndicator offsets(hierarchy);
+        const Threshold threshold(&offsets, 0.1);
+        const Criterion& borrowed = threshold;
+        const Projection named{.threshold = 0.1};
+        for (const Projection& own :
+             {under(offsets, 0.1), under(threshold, offsets), under(borrowed, offsets)}) {
+            expect_same(isosurface<dimension>(prerolls, 0, own).surface,
+                        isosurface<dimension>(prerolls, 0, named).surface);
+            if constexpr (dimension == 3) {
+                const Plane plane({0.4, 0.5, 0.5}, {1, 2, 3});
+                expect_same(slice(prerolls, plane, own).surface,
+                            slice(prerolls, plane, named).surface);
+            } else {
+                expect_same(shading(prerolls, own).surface, shading(prerolls, named).surface);
+            }
+        }
+    });
+}
+
 TYPED_TEST(Drawing, CollapsesColoursToANumberOfTriangles) {
     std::size_t fitting = 0;
     for_each_drawn<TypeParam>(44, [&](const auto&, Prerolls& prerolls, auto dimension) {
@@ -270,6 +292,17 @@ TEST(Drawing, RefusesWhatMakesNoSense) {
         expect_refused([&] { isosurface<3>(prerolls, 2, projection); }, part);
     };
     refused({.collapse = true}, "neither is given");
+    const HierarchicalIndicator offsets(grid, field);
+    Projection by_criterion = under(offsets, 1);
+    by_criterion.max_triangles = 9;
+    refused(by_criterion, "by a criterion has no threshold");
+    by_criterion = under(offsets, 1);
+    by_criterion.threshold = 1;
+    refused(by_criterion, "by a criterion has no threshold");
+    by_criterion = under(offsets, 1);
+    by_criterion.bounds = nullptr;
+    refused(by_criterion, "needs bounds");
+    refused({.bounds = &offsets}, "no other one has them");
     refused({.threshold = 1, .collapse = true, .slice_distance = 1}, "none is drawn");
     refused({.keeps_distance = true}, "no threshold that says which");
     refused({.threshold = 1,
