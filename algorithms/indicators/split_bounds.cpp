@@ -13,7 +13,7 @@
 namespace nestgrid {
 
 bool are_split_bounds_worth_while(const HierarchyFacts& facts) {
-    return !facts.knows_stars && !facts.knows_patches && facts.shared == nullptr;
+    return !facts.knows_stars && !facts.knows_patches;
 }
 
 SplitBounds::SplitBounds(const Hierarchy<float>& hierarchy, const Executor& executor) {

@@ -104,6 +104,9 @@ public:
         if (between_frames() || !are_split_bounds_worth_while(field.facts())) {
             return choose(offset, 1, {}, work);
         }
+        if (field.facts().shared != nullptr) {  // bounds of nodes are agreed
+            return {&offset, nullptr, choose(offset, 1, {}, work).bounds};
+        }
         require_unchanged(field);
         const std::scoped_lock lock(mutex_);
         const auto offsets = of_nodes_.find({NodeError::offset, 1.0});

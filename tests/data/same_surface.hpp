@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// That two ways to a surface give the same one, to the last bit and in the same order.
+// That two ways to a surface give the same one, to the last bit; in the same order, or in any.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <type_traits>
 #include <vector>
@@ -37,6 +39,27 @@ void expect_same(const Surface<dimension>& a, const Surface<dimension>& b) {
     expect_same_bits(a.shape_of, b.shape_of, "shape_of");
     expect_same_bits(a.level_of, b.level_of, "level_of");
     expect_same_bits(a.boundary, b.boundary, "boundary");
+}
+
+/// The positions of the corners of each simplex, from its least one on, in order. The order of the
+/// simplices themselves depends on what bounds know of the elements beside those that stop.
+template <int dimension>
+auto sorted_simplices(const Surface<dimension>& surface) {
+    std::vector<std::array<nestgrid::Point, static_cast<std::size_t>(dimension)>> all;
+    for (const auto& simplex : surface.simplices) {
+        auto& corners = all.emplace_back();
+        for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = surface.vertices[simplex[i]];
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()),
+                    corners.end());
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+template <int dimension>
+void expect_same_simplices(const Surface<dimension>& a, const Surface<dimension>& b) {
+    EXPECT_EQ(a.vertices.size(), b.vertices.size());
+    EXPECT_TRUE(sorted_simplices(a) == sorted_simplices(b));
 }
 
 inline void expect_same(const TraversalCounts& a, const TraversalCounts& b) {

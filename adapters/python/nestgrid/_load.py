@@ -63,9 +63,9 @@ def load(
                 of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it; or a
                 picture; or a plotfile of AMReX, a folder with the file Header, which must stay as
                 it is; or other boxes of cells (Blocks): .vthb, Enzo's .hierarchy, .athdf of
-                Athena++, or HDF5 of Chombo or FLASH, of any name. What has one sample along an axis is a plane: Volume.array[i, j]. Reading
-                .vtu, .vti, .vthb, .nii, pictures, Enzo and FLASH needs VTK's Python package, HDF5
-                h5py, DICOM pydicom
+                Athena++, or HDF5 of Chombo or FLASH, of any name. What has one sample along an
+                axis is a plane: Volume.array[i, j]. Reading .vtu, .vti, .vthb, .nii, pictures,
+                Enzo and FLASH needs VTK's Python package, HDF5 h5py, DICOM pydicom
     array       the name of the field, for .nestgrid, boxes, .vtu and .vti, or of the series of
                 DICOM; "": the only one, or the active one, or that of the slice
     frame       which of several volumes in a file, from 0; None: the first, with a warning that

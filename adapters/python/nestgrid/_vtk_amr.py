@@ -36,8 +36,8 @@ def _numbers(grid: Any, name: str, component: int, what: str) -> np.ndarray:
     if ghosts is not None:
         is_hidden = vtk_to_numpy(ghosts) & HIDDEN != 0
         if is_hidden.any():
-            kind = np.float32 if numbers.dtype == np.float32 else np.float64
-            numbers = np.where(is_hidden, kind(np.nan), numbers)
+            numbers = numbers.astype(np.float32 if numbers.dtype == np.float32 else np.float64)
+            numbers[is_hidden] = np.nan
     return numbers
 
 

@@ -35,6 +35,18 @@ class Reference:
         assert surface.attributes.tobytes() == theirs.tobytes()
         self.same_numbers(name, surface)
 
+    def same_triangles(self, name, surface):
+        """Asserts that two surfaces have the same triangles, in any order, and that there is one."""
+
+        def sorted_triangles(vertices, triangles):
+            turned = (np.roll(t, -min(range(3), key=lambda k: tuple(t[k])), axis=0) for t in vertices[triangles])
+            return sorted(t.tobytes() for t in turned)
+
+        assert len(surface.triangles) > 0
+        theirs = self.array(f"{name}.vertices", float, -1, 3), self.array(f"{name}.triangles", np.uint32, -1, 3)
+        assert sorted_triangles(surface.vertices, surface.triangles) == sorted_triangles(*theirs)
+        self.same_numbers(name, surface)
+
     def same_lines(self, name, lines):
         assert len(lines) > 0
         theirs = {

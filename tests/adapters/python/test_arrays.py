@@ -131,7 +131,7 @@ def test_octree(reference, shuffled):
         order = np.random.default_rng(1).permutation(len(leaves))
         leaves, values = leaves[order], values[order]
     octree = nestgrid.Octree(leaves, values, spacing=(0.5, 1, 0.25), origin=(1, 2, 3))
-    reference.same_surface("octree", octree.isosurface(0.3, 0.05))
+    reference.same_triangles("octree", octree.isosurface(0.3, 0.05))
 
 
 def test_octree_of_means(reference):

@@ -49,13 +49,29 @@ std::vector<std::uint32_t> indices_of(const Simplices& simplices) {
     return result;
 }
 
+/// The surface of arrays of a frame.
+template <int dimension>
+Surface<dimension> surface_of(const std::vector<float>& positions,
+                              const std::vector<std::uint32_t>& indices) {
+    constexpr auto corners = static_cast<std::size_t>(dimension);
+    Surface<dimension> surface;
+    for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+        surface.vertices.push_back({positions[i], positions[i + 1], positions[i + 2]});
+    }
+    for (std::size_t i = 0; i + corners <= indices.size(); i += corners) {
+        auto& simplex = surface.simplices.emplace_back();
+        for (std::size_t k = 0; k < corners; ++k) simplex[k] = indices[i + k];
+    }
+    return surface;
+}
+
 /// A part of a frame has the vertices and triangles (segments) of a surface.
 template <int dimension>
 void expect_part(const Frame& frame, const std::string& kind, const Surface<dimension>& surface) {
-    expect_same_bits(frame.array<float>(kind, "positions"), floats_of(surface.vertices),
-                     "vertices");
-    expect_same_bits(frame.array<std::uint32_t>(kind, "indices"), indices_of(surface.simplices),
-                     "simplices");
+    expect_same_simplices(
+        surface_of<dimension>(frame.array<float>(kind, "positions"),
+                              frame.array<std::uint32_t>(kind, "indices")),
+        surface_of<dimension>(floats_of(surface.vertices), indices_of(surface.simplices)));
 }
 
 /// A field that borrows a grid and values of the test.
