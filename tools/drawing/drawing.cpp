@@ -110,7 +110,7 @@ private:
         if (request_.has_two_surfaces()) return draw_both(drawn, projection, work);
         if (request_.isovalue) return draw_isosurface(drawn, projection, work);
         if (request_.function != nullptr) {
-            return take(drawn, slice(prerolls(), *request_.function, projection,
+            return take(drawn, slice(prerolls(), *request_.function, of_slice(projection),
                                      {.cap = request_.cap, .elements = keeps_elements()}, work));
         }
         const nestgrid::ShadingOptions options{.elements = keeps_elements()};
@@ -119,6 +119,15 @@ private:
                         : height_field(prerolls(), request_.scale, projection, options, work);
         take_facts(drawn, grid);
         drawn.result = {grid, std::move(grid.surface), grid.counts};
+    }
+    /// At threshold 0 a slice stops where one does beside an isosurface. Without a threshold it
+    /// needs no preroll, and stops nowhere.
+    Projection of_slice(const Projection& projection) const {
+        if (!projection.asks_for_everything()) return projection;
+        const nestgrid::Criteria& criteria = moment_.criteria();
+        Projection at_zero = under(criteria.at(0), criteria.bounds());
+        at_zero.colour_tolerance = projection.colour_tolerance;
+        return at_zero;
     }
     void draw_isosurface(Drawn& drawn, const Projection& projection, const Work& work) const {
         const double isovalue = *request_.isovalue;
