@@ -22,6 +22,8 @@
 
 #include <nestgrid/error.hpp>
 
+#include "formats.hpp"
+
 namespace {
 
 using nestgrid::IoError;
@@ -242,4 +244,21 @@ std::shared_ptr<const Parcel> run_apart(const std::string& file, double seconds,
     if (!cause.empty()) throw IoError(file + " cannot be read: " + cause);
     parcel->open();
     return parcel;
+}
+
+std::uintmax_t bytes_to_read(const std::filesystem::path& path, const Format& format) {
+    std::error_code none;
+    std::filesystem::path folder = path;
+    if (!std::filesystem::is_directory(path, none)) {
+        if (!format.reads_beside) return std::filesystem::file_size(path);
+        folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    }
+    std::uintmax_t bytes = 0;
+    for (std::filesystem::recursive_directory_iterator at(folder, none), end; !none && at != end;
+         at.increment(none)) {
+        std::error_code unreadable;
+        const std::uintmax_t size = at->is_regular_file(unreadable) ? at->file_size(unreadable) : 0;
+        if (!unreadable) bytes += size;
+    }
+    return bytes;
 }

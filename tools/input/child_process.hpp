@@ -8,10 +8,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
+
+struct Format;
 
 /// Blocks of bytes in memory that a child process shares with its parent. The child appends them,
 /// the parent looks at them without a copy. A block starts at a page.
@@ -59,6 +62,10 @@ private:
     Directory* directory_ = nullptr;
     std::span<std::byte> contents_;  ///< of the file, once it has been opened
 };
+
+/// The size of a file, or of all files in a folder; where the format reads files beside, of those,
+/// too.
+std::uintmax_t bytes_to_read(const std::filesystem::path& path, const Format& format);
 
 /// Seconds within which a file of so many bytes, unpacked, can be read from a slow disk.
 constexpr double reading_time(std::uintmax_t bytes) {

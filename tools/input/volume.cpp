@@ -94,25 +94,6 @@ Volume open_volume(const std::shared_ptr<const OpenedSamples>& kept, std::size_t
     return volume;
 }
 
-/// The size of a file, or of all files in a folder; where the format reads files beside, of those,
-/// too.
-std::uintmax_t bytes_to_read(const fs::path& path, const Format& format) {
-    std::error_code none;
-    fs::path folder = path;
-    if (!fs::is_directory(path, none)) {
-        if (!format.reads_beside) return fs::file_size(path);
-        folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    }
-    std::uintmax_t bytes = 0;
-    for (fs::recursive_directory_iterator at(folder, none), end; !none && at != end;
-         at.increment(none)) {
-        std::error_code unreadable;
-        const std::uintmax_t size = at->is_regular_file(unreadable) ? at->file_size(unreadable) : 0;
-        if (!unreadable) bytes += size;
-    }
-    return bytes;
-}
-
 /// Says what could be done with a file that holds no samples.
 std::string unknown_format(const fs::path& path) {
     const Format* const format = format_of(path);

@@ -188,21 +188,6 @@ std::shared_ptr<const Parcel> run(const fs::path& path, double seconds, const Wo
     });
 }
 
-/// Bytes of a file, or of all files in its folder where those are read, too.
-std::uintmax_t bytes_to_read(const fs::path& path, const Format& format) {
-    if (!format.reads_beside) return fs::file_size(path);
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    std::uintmax_t bytes = 0;
-    std::error_code none;
-    for (fs::recursive_directory_iterator at(folder, none), end; !none && at != end;
-         at.increment(none)) {
-        std::error_code unreadable;
-        const std::uintmax_t size = at->is_regular_file(unreadable) ? at->file_size(unreadable) : 0;
-        if (!unreadable) bytes += size;
-    }
-    return bytes;
-}
-
 }  // namespace
 
 BlockFile open_apart(const fs::path& path, double seconds, OpenBlocks open) {
