@@ -78,7 +78,9 @@ std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
 }
 
 /// Calls draw(hierarchy, criterion, bounds) once, with a field of the dimension under the
-/// projection. \param isovalues of the level sets that are drawn
+/// projection.
+///
+/// \param isovalues of the level sets that are drawn
 template <class Draw>
 auto draw_once(const Prerolls& prerolls, const Projection& projection,
                std::span<const double> isovalues, const Work& work, int dimension,
