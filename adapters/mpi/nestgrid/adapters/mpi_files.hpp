@@ -13,8 +13,10 @@
 #pragma once
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <system_error>
 
 #include <nestgrid/adapters/mpi.hpp>
 #include <nestgrid/adapters/vtk_pieces.hpp>
@@ -77,26 +79,14 @@ public:
     ///
     /// \throw IoError on all ranks alike; nothing is left of the file then
     void close(std::uint64_t bytes) {
-        if (file_ != MPI_FILE_NULL) {
-            MPI_Offset size = 0;
-            if (MPI_File_get_size(file_, &size) != MPI_SUCCESS ||
-                static_cast<std::uint64_t>(size) != bytes) {
-                note(MPI_ERR_NO_SPACE, "written");
-            }
-            note(MPI_File_close(&file_), "closed");
-        }
+        if (file_ != MPI_FILE_NULL) note(MPI_File_close(&file_), "closed");
         try {
             require_written(*ranks_, failed_);
+            require_written(*ranks_, ranks_->rank() == 0 ? name_whole(bytes) : std::string{});
         } catch (const IoError&) {
             if (ranks_->rank() == 0) std::remove(part().c_str());
             throw;
         }
-        std::string failed;
-        if (ranks_->rank() == 0 && std::rename(part().c_str(), path_.c_str()) != 0) {
-            failed = "'" + path_ + "' could not be given its name";
-            std::remove(part().c_str());
-        }
-        require_written(*ranks_, failed);
     }
 
 private:
@@ -109,6 +99,18 @@ private:
         int length = 0;
         MPI_Error_string(code, text.data(), &length);
         failed_ = "'" + path_ + "' could not be " + what + ": " + text.data();
+    }
+
+    /// Gives the file its name. The size shows what ranks wrote only after all have closed it: a
+    /// collective write may return before those of other ranks have ended.
+    /// \return what is wrong, or nothing
+    std::string name_whole(std::uint64_t bytes) const {
+        std::error_code failed;
+        if (std::filesystem::file_size(part(), failed) != bytes || failed) {
+            return "'" + path_ + "' could not be written whole: is there space left?";
+        }
+        std::filesystem::rename(part(), path_, failed);
+        return failed ? "'" + path_ + "' could not be given its name" : "";
     }
 
     MpiRanks* ranks_;
