@@ -12,18 +12,8 @@ std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Executor& executor) {
     const auto count = [&](const Graph<Real>& graph) -> std::optional<std::uint64_t> {
         Surface<3> element;
-        Triangulation<Real> drawing(graph, {element, false});
-        drawing.count_only(most);
-        try {
-            drawing.run(executor, options.progress);
-        } catch (const OverLimit&) {
-            return std::nullopt;
-        }
-        std::uint64_t triangles = drawing.triangles();
-        std::array<std::uint64_t*, 1> sum{&triangles};
-        if (const auto* shared = hierarchy.facts().shared) engine::take_sums(shared->ranks(), sum);
-        if (triangles > most) return std::nullopt;
-        return triangles;
+        Triangulation<Real> drawing(graph, {element, false}, options.progress);
+        return count_within<Real>(drawing, most, executor, hierarchy.facts().shared);
     };
     return with_graph(hierarchy, 0, criterion, bounds, options, false, count);
 }

@@ -12,14 +12,9 @@ template <class Real>
 Shading draw(const Graph<Real>& graph, const ShadingOptions& options, const Executor& executor) {
     Shading result;
     result.surface.elements = graph.walk->hierarchy().make_elements();
-    Triangulation<Real> drawing(graph, {result.surface, options.elements});
-    try {
-        drawing.run(executor, options.progress);
-    } catch (const Cancelled&) {
-        result.cancelled = true;
-    }
-    const SharedNodes* const shared = graph.walk->hierarchy().facts().shared;
-    if (shared != nullptr) drawing.agree(shared->ranks());
+    Triangulation<Real> drawing(graph, {result.surface, options.elements}, options.progress);
+    result.cancelled =
+        run_until_cancelled<Real>(drawing, executor, graph.walk->hierarchy().facts().shared);
     drawing.report(result);
     if (graph.criterion->insists()) result.error_bound = result.range_bound;
     return result;

@@ -6,79 +6,101 @@
 #include <bit>
 
 #include <levels/error_bound.hpp>
-#include <ranks/agreement.hpp>
 #include <walk/walk_steps.hpp>
 
 namespace nestgrid::engine {
 
 template <class Real>
-Triangulation<Real>::Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder)
-    : graph_{graph},
+Triangulation<Real>::Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder,
+                                   const Progress& progress)
+    : Base(*graph.walk, progress),
+      graph_{graph},
       polygon_{*graph.walk, graph.shape},
-      drawn_{{builder, graph.walk->hierarchy().facts().node_count}} {
-    drawn_.nodes.begin(graph.walk->components());
-    drawn_.surface.begin(builder, {}, false);
+      surface_{builder, graph.walk->hierarchy().facts().node_count} {
+    recorded_.begin(graph.walk->components());
+    surface_.begin(builder, {}, false);
 }
 
 template <class Real>
-void Triangulation<Real>::run(const Executor& executor,
-                              const std::function<bool(const TraversalCounts&)>& progress) {
-    if (progress) progress_ = &progress;
-    const auto walk_alone = [&] { together(shared(), "triangles", [&] { walk(executor); }); };
-    if (shared() != nullptr && !drawn_.surface.counts_only()) {
-        drawn_.surface.keep_names(shared()->ranks().rank());
+Triangulation<Real>::Triangulation(const Graph<Real>& graph)
+    : Base(*graph.walk, {}),
+      graph_{graph},
+      polygon_{*graph.walk, graph.shape},
+      surface_{{part_, true, graph.elements}, graph.walk->hierarchy().facts().node_count} {
+    recorded_.begin(graph.walk->components());
+    part_.surface.elements = graph.walk->hierarchy().make_elements();
+    surface_.begin({part_, true, graph.elements}, {}, false);
+}
+
+template <class Real>
+void Triangulation<Real>::count_only(std::uint64_t most) {
+    Base::count_only(most);
+    surface_.count_only();
+}
+
+template <class Real>
+void Triangulation<Real>::run(const Executor& executor) {
+    const auto walk = [&] {
+        together(shared(), "triangles", [&] { Base::walk_elements(executor); });
+    };
+    if (shared() != nullptr && !surface_.counts_only()) {
+        surface_.keep_names(shared()->ranks().rank());
     }
     if (graph_.stops_apart) {
         records_ = true;
-        walk_alone();
+        walk();
         records_ = false;
-        restart();
-        drawn_.tally.begin_later();
-        if (shared() != nullptr) drawn_.nodes.exchange(*shared());
-        drawn_.nodes.finish();
-        if (!drawn_.nodes.empty()) nodes_ = &drawn_.nodes;
+        this->restart();
+        tally_.begin_later();
+        if (shared() != nullptr) recorded_.exchange(*shared());
+        recorded_.finish();
+        if (!recorded_.empty()) nodes_ = &recorded_;
     }
-    walk_alone();
-}
-
-/// Walks alone, or in tasks.
-template <class Real>
-void Triangulation<Real>::walk(const Executor& executor) {
-    if (executor.concurrency() < 2) return graph_.walk->run_as(*this);
-    std::vector<std::unique_ptr<Task>> tasks(most_tasks(executor));
-    run_tasks<Real>(
-        *graph_.walk, *this, executor,
-        [&](std::size_t i) -> TaskVisitor<Real>& {
-            tasks[i] = begin_task();
-            return *tasks[i]->draws;
-        },
-        [&](std::size_t i) {
-            count(tasks[i]->draws->drawn_.counts.calls);
-            drawn_.add(tasks[i]->draws->drawn_, tasks[i]->part);
-            tasks[i].reset();
-        });
+    walk();
 }
 
 template <class Real>
-auto Triangulation<Real>::begin_task() const -> std::unique_ptr<Task> {
-    auto task = std::make_unique<Task>();
-    task->part.surface.elements = graph_.walk->hierarchy().make_elements();
-    task->draws = std::make_unique<Triangulation>(
-        graph_, SurfaceBuilder<3>(task->part, true, graph_.elements));
-    task->draws->records_ = records_;
-    task->draws->nodes_ = nodes_;
-    if (drawn_.surface.counts_only()) task->draws->count_only(drawn_.tally.limit());
-    return task;
+void Triangulation<Real>::walk_alone() {
+    graph_.walk->run_as(*this);
+}
+
+template <class Real>
+auto Triangulation<Real>::begin_part(std::unique_ptr<Base>) -> std::unique_ptr<Base> {
+    auto part = std::make_unique<Triangulation>(graph_);
+    part->records_ = records_;
+    part->nodes_ = nodes_;
+    if (surface_.counts_only()) part->count_only(tally_.limit());
+    return part;
+}
+
+template <class Real>
+void Triangulation<Real>::add(Base& part) {
+    const auto& drawn = static_cast<const Triangulation&>(part);
+    surface_.add_report(drawn.surface_);
+    recorded_.append(drawn.recorded_);
+    tally_.add(drawn.tally_);
+    if (!surface_.counts_only()) surface_.add_part(drawn.part_);
+}
+
+template <class Real>
+void Triangulation<Real>::agree(Ranks& ranks) {
+    double error = surface_.error_bound();
+    std::array<double*, 1> greatest{&error};
+    take_greatest(ranks, greatest);
+    surface_.raise_error_bound(error);
+    std::uint64_t extracted = surface_.extracted();
+    std::array<std::uint64_t*, 1> sum{&extracted};
+    take_sums(ranks, sum);
+    surface_.add_extracted(extracted - surface_.extracted());
+    Base::agree(ranks);
 }
 
 /// \throw Cancelled where progress says so
 template <class Real>
 void Triangulation<Real>::count(std::uint64_t elements) {
-    const std::uint64_t before = drawn_.counts.calls;
-    drawn_.counts.calls += elements;
-    drawn_.counts.visited += elements;
-    if (progress_ == nullptr || before >> 16U == drawn_.counts.calls >> 16U) return;
-    if (!(*progress_)(drawn_.counts)) throw Cancelled{};
+    const std::uint64_t before = counts_.calls;
+    Base::count(elements, elements);
+    if (before >> 16U != counts_.calls >> 16U) Base::tell(0, 0);
 }
 
 template <class Real>
@@ -107,7 +129,7 @@ Decision Triangulation<Real>::look(const View& view, const Split& split) {
 template <class Real>
 Leaves Triangulation<Real>::leaves(const Rule&, const Real*, NodeMask which, bool closed) {
     count(static_cast<std::uint64_t>(std::popcount(which)));
-    if (records_ && !closed && !drawn_.tally.limited()) return {};
+    if (records_ && !closed && !tally_.limited()) return {};
     return {which, 0};
 }
 
@@ -115,10 +137,10 @@ Leaves Triangulation<Real>::leaves(const Rule&, const Real*, NodeMask which, boo
 /// at least.
 template <class Real>
 void Triangulation<Real>::record(const View& view) {
-    if (drawn_.tally.limited() && view.member->hidden != Hidden::wholly) drawn_.tally.add_later(1);
+    if (tally_.limited() && view.member->hidden != Hidden::wholly) tally_.add_later(1);
     if (!view.closed.any) return;
     polygon_.load(view);
-    polygon_.record(drawn_.nodes);
+    polygon_.record(recorded_);
 }
 
 template <class Real>
@@ -126,13 +148,13 @@ void Triangulation<Real>::extract(const View& view) {
     if (records_) return record(view);
     polygon_.load(view);
     const bool finest = view.level == graph_.bounds->finest_level();
-    polygon_.draw(finest ? nullptr : nodes_, drawn_.surface);
-    if (drawn_.surface.counts_only()) {
-        drawn_.tally.add(drawn_.surface.builder().target()->simplices.size());
-        return drawn_.surface.forget_element();
+    polygon_.draw(finest ? nullptr : nodes_, surface_);
+    if (surface_.counts_only()) {
+        tally_.add(surface_.builder().target()->simplices.size());
+        return surface_.forget_element();
     }
-    drawn_.surface.add_extracted(1);
-    drawn_.surface.add_limited(view.inner_bounds().limited ? 1 : 0);
+    surface_.add_extracted(1);
+    surface_.add_limited(view.inner_bounds().limited ? 1 : 0);
     raise_error_bound(view);
 }
 
@@ -141,7 +163,7 @@ void Triangulation<Real>::extract(const View& view) {
 template <class Real>
 void Triangulation<Real>::raise_error_bound(const View& view) {
     const float told = view.is_leaf() ? view.inner_bounds().error : 0;
-    if (told > 0) return drawn_.surface.raise_error_bound(static_cast<double>(told));
+    if (told > 0) return surface_.raise_error_bound(static_cast<double>(told));
     std::array<double, max_corners> u{};
     for (std::size_t i = 0; i < view.corner_count(); ++i) u[i] = polygon_.u(i);
     const Extent corners = Extent::of(std::span(u).first(view.corner_count()));
@@ -150,13 +172,20 @@ void Triangulation<Real>::raise_error_bound(const View& view) {
     const Bounds& bounds = *graph_.bounds;
     const double off =
         projected_away(view, polygon_.keys(), view.is_leaf() ? 0 : below_, bounds, bounds);
-    drawn_.surface.raise_error_bound(
+    surface_.raise_error_bound(
         std::min(off + chord, greatest_difference(corners, corners, off, bounds)));
 }
 
 template <class Real>
 void Triangulation<Real>::report(Shading& result) const {
-    drawn_.report(result);
+    result.counts = counts_;
+    result.counts.extracted = surface_.extracted();
+    result.counts.limited = surface_.limited();
+    result.error_bound = surface_.error_bound();
+    result.edge_nodes = recorded_.size();
+    result.edge_nodes_bytes = recorded_.memory_bytes();
+    result.table_bytes = surface_.memory_bytes();
+    result.names = surface_.vertex_names();
     const Bounds& bounds = *graph_.bounds;
     result.range_bound = greatest_difference({bounds.least(), bounds.greatest()}, bounds);
 }

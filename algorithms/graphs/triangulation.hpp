@@ -4,19 +4,18 @@
 // Triangulates the elements at which a criterion stops on a two-dimensional hierarchy.
 //
 // Two walks draw elements that may stop without conforming: the first one records the nodes inside
-// closed edges (edge_nodes.hpp), the second one draws. One walk draws the others. Tasks of several
-// threads record and draw parts; the leader puts these together in the order of one thread, so that
-// no bit depends on the number of threads.
+// closed edges (edge_nodes.hpp), the second one draws. One walk draws the others.
 #pragma once
 
 #include <memory>
 
-#include <graphs/drawn_graph.hpp>
+#include <drawing/drawing.hpp>
+#include <graphs/edge_nodes.hpp>
 #include <graphs/element_polygon.hpp>
-#include <nestgrid/algorithms/executor.hpp>
 #include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/shading_options.hpp>
+#include <surfaces/level_surface.hpp>
 #include <walk/criterion_question.hpp>
-#include <walk/frontier.hpp>
 
 namespace nestgrid::engine {
 
@@ -32,60 +31,52 @@ struct Graph {
 };
 
 template <class Real>
-class Triangulation final : public TaskVisitor<Real> {
+class Triangulation final : public Drawing<Real> {
 public:
+    using Base = Drawing<Real>;
     using View = ElementView<Real>;
     static constexpr Needs needs{.positions = true, .closed = true, .on_ranks = true};
 
-    Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder);
+    /// \param progress as in ShadingOptions; borrowed
+    Triangulation(const Graph<Real>& graph, const SurfaceBuilder<3>& builder,
+                  const Progress& progress);
+    /// What a task draws: its surface lies in the drawing.
+    explicit Triangulation(const Graph<Real>& graph);
 
-    /// Only counts triangles, to be called before run().
-    /// \param most run() throws OverLimit where there are more
-    void count_only(std::uint64_t most) { drawn_.count_only(most); }
-    /// Records and draws everything. Collective where the grid is distributed.
-    /// \param progress as in ShadingOptions
-    /// \throw Cancelled where progress says so; OverLimit
-    void run(const Executor& executor, const std::function<bool(const TraversalCounts&)>& progress);
-    /// Takes the counts and bounds of all ranks together, after run(). Collective.
-    void agree(Ranks& ranks) { drawn_.agree(ranks); }
+    void run(const Executor& executor) override;
+    void agree(Ranks& ranks) override;
+    void count_only(std::uint64_t most) override;
     /// Puts everything but the surface into a result.
     void report(Shading& result) const;
-    /// The number of triangles that were counted.
-    std::uint64_t triangles() const { return drawn_.tally.drawn(); }
 
     bool sees_hidden() const override { return records_; }
     Decision inspect(const View& view, const Split& split) override;
     Decision look(const View& view, const Split& split) override;
     Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
     void extract(const View& view) override;
-    void undo() override {
-        drawn_.counts.calls -= counted_;
-        drawn_.counts.visited -= counted_;
-    }
-    void restart() override { drawn_.counts = {}; }
 
 private:
-    struct Task {
-        SurfacePart<3> part;
-        std::unique_ptr<Triangulation> draws;
-    };
+    using Base::counted_;
+    using Base::counts_;
+    using Base::shared;
+    using Base::tally_;
 
-    const SharedNodes* shared() const { return graph_.walk->hierarchy().facts().shared; }
-    void walk(const Executor& executor);
-    std::unique_ptr<Task> begin_task() const;
+    std::unique_ptr<Base> begin_part(std::unique_ptr<Base> used) override;
+    void add(Base& part) override;
+    void walk_alone() override;
     void count(std::uint64_t elements);
     void record(const View& view);
     void raise_error_bound(const View& view);
 
     Graph<Real> graph_;
     ElementPolygon<Real> polygon_;
-    DrawnGraph drawn_;
+    SurfacePart<3> part_;  // of a task: what its surface is drawn into
+    LevelSurface<3> surface_;
+    EdgeNodes recorded_;  // inside closed edges, in the first of two walks
     CriterionQuestion question_;
     const EdgeNodes* nodes_ = nullptr;  // recorded by all tasks
     bool records_ = false;              // in the first walk
     double below_ = 0;                  // how far U may leave the corner values in an element
-    std::uint64_t counted_ = 1;         // by the last inspect()
-    const std::function<bool(const TraversalCounts&)>* progress_ = nullptr;
 };
 
 }  // namespace nestgrid::engine

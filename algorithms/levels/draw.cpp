@@ -143,17 +143,7 @@ std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const C
     Surface<dimension> nothing;
     const std::vector<typename Drawing::Builder> builders(levels.levels.size(), {nothing, false});
     Drawing drawing(*walk, search, builders, plain, levels.first_attribute);
-    drawing.count_only(most);
-    try {
-        drawing.run(executor);
-    } catch (const OverLimit&) {
-        return std::nullopt;
-    }
-    std::uint64_t count = drawing.simplices();
-    std::array<std::uint64_t*, 1> sum{&count};
-    if (shared != nullptr) take_sums(shared->ranks(), sum);
-    if (count > most) return std::nullopt;
-    return count;
+    return count_within<Real>(drawing, most, executor, shared);
 }
 
 namespace {
@@ -234,7 +224,7 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     const auto builders = make_builders(targets, chunks, options);
     const LevelSearch<Real> search(*walk, levels.levels, criterion, bounds);
     Drawing drawing(*walk, search, builders, options, levels.first_attribute);
-    const bool cancelled = run_until_cancelled(drawing, executor, shared);
+    const bool cancelled = run_until_cancelled<Real>(drawing, executor, shared);
     std::vector<Isosurface<dimension>> results(count);
     for (std::size_t i = 0; i < count; ++i) {
         drawing.report(i, results[i]);

@@ -41,23 +41,6 @@ std::vector<Isosurface<dimension>> draw_levels(
     const Criterion& criterion, const Bounds& bounds, const IsosurfaceOptions& options,
     const Executor& executor);
 
-/// Runs a drawing, and takes its counts and bounds of all ranks together.
-/// \param shared the nodes that other ranks have, too, or null
-/// \return whether options.progress cancelled it
-template <class Drawing>
-bool run_until_cancelled(Drawing& drawing, const Executor& executor, const SharedNodes* shared) {
-    bool cancelled = false;
-    try {
-        drawing.run(executor);
-    } catch (const Cancelled&) {
-        cancelled = true;
-    }
-    // Of a walk that went to its end, nothing is left to flush.
-    if (cancelled) together(shared, "isosurfaces", [&] { drawing.flush(); });
-    if (shared != nullptr) drawing.agree(shared->ranks());
-    return cancelled;
-}
-
 /// \throw InvalidInput where vertices at nodes are asked for together with what excludes them
 template <int dimension>
 void require_options(const IsosurfaceOptions& options);

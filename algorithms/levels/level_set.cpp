@@ -45,7 +45,7 @@ template <int dimension, class Real>
 LevelSet<dimension, Real>::LevelSet(const Walk<Real>& walk, const LevelSearch<Real>& search,
                                     std::span<const Builder> builders,
                                     const IsosurfaceOptions& options, std::size_t first_attribute)
-    : walk_{&walk},
+    : Base(walk, options.progress),
       search_{&search},
       options_{&options},
       first_attribute_{first_attribute},
@@ -67,7 +67,7 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
                                       std::span<const Builder> builders) {
     search_ = &search;
-    restart();
+    this->restart();
     tally_ = SimplexTally();
     deepest_ = 0;
     records_ = dimension == 3 && search.may_stop_apart();
@@ -117,7 +117,7 @@ void LevelSet<dimension, Real>::join(const LevelSet& leader) {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
-    tally_ = SimplexTally(most);
+    Base::count_only(most);
     for (LevelSurface<dimension>& surface : surfaces_) surface.count_only();
     for (Transitions<Real>& t : transitions_) t.record.know_by_names(true);
 }
@@ -161,17 +161,17 @@ bool LevelSet<dimension, Real>::bisects_slices() const {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::run(const Executor& executor) {
-    const SharedNodes* const shared = this->shared();
+    const SharedNodes* const ranks = shared();
     const auto alone = [&](const auto& part) {
-        together(shared, "isosurfaces",
+        together(ranks, "isosurfaces",
                  [&] { with_places(walk_->hierarchy(), part, walk_->function_count()); });
     };
     alone([&] {
         find_hidden_faces();
-        walk(executor);
+        Base::walk_elements(executor);
     });
     for (Transitions<Real>& t : transitions_) {
-        if (records_ && shared != nullptr) t.record.exchange();
+        if (records_ && ranks != nullptr) t.record.exchange();
     }
     alone([&] {
         tally_.begin_later();
@@ -183,9 +183,9 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
             surfaces_[i].builder().flush();
         }
     });
-    if (options_->normals && shared != nullptr) normals_.add_across();
+    if (options_->normals && ranks != nullptr) normals_.add_across();
     for (LevelSurface<dimension>& surface : surfaces_) {
-        surface.finish(options_->at_nodes && !surface.counts_only(), shared);
+        surface.finish(options_->at_nodes && !surface.counts_only(), ranks);
     }
 }
 
@@ -208,14 +208,64 @@ void LevelSet<dimension, Real>::agree(Ranks& ranks) {
         take_sums(ranks, sum);
         surface.add_extracted(extracted - surface.extracted());
     }
-    std::array<std::uint64_t*, 2> sums{&counts_.calls, &counts_.visited};
-    take_sums(ranks, sums);
+    Base::agree(ranks);
 }
 
 template <int dimension, class Real>
-void LevelSet<dimension, Real>::walk(const Executor& executor) {
-    if (executor.concurrency() < 2) return walk_->run_as(*this);
-    tasks_.run(*this, executor);
+void LevelSet<dimension, Real>::walk_alone() {
+    walk_->run_as(*this);
+}
+
+template <int dimension, class Real>
+auto LevelSet<dimension, Real>::begin_part(std::unique_ptr<Base> used) -> std::unique_ptr<Base> {
+    std::unique_ptr<LevelSet> part(static_cast<LevelSet*>(used.release()));
+    std::vector<SurfacePart<dimension>> parts(surfaces_.size());
+    if (part) {
+        parts = std::move(part->parts_);
+    } else {
+        for (auto& p : parts) p.surface.elements = walk_->hierarchy().make_elements();
+    }
+    std::vector<Builder> builders;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        const Builder& builder = surfaces_[i].builder();
+        builders.emplace_back(parts[i], builder.shares_vertices(), builder.keeps_elements());
+        builders.back().clear();
+    }
+    if (part) {
+        part->begin(*search_, builders);
+    } else {
+        part = std::make_unique<LevelSet>(*walk_, *search_, builders, *options_, first_attribute_);
+    }
+    part->parts_ = std::move(parts);
+    part->join(*this);
+    return part;
+}
+
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::add(Base& part) {
+    const auto& drawn = static_cast<const LevelSet&>(part);
+    deepest_ = std::max(deepest_, drawn.deepest_);
+    tally_.add(drawn.tally_);
+    normals_.append(drawn.normals_);
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) add_part(i, drawn);
+}
+
+/// Adds the part of one level.
+template <int dimension, class Real>
+void LevelSet<dimension, Real>::add_part(std::size_t level, const LevelSet& drawn) {
+    LevelSurface<dimension>& surface = surfaces_[level];
+    const LevelSurface<dimension>& more = drawn.surfaces_[level];
+    surface.add_report(more);
+    std::vector<std::uint32_t> numbers;
+    if (!surface.counts_only()) numbers = surface.add_part(drawn.parts_[level], &more);
+    if (records_) {
+        Transitions<Real>& to = transitions_[level];
+        const Transitions<Real>& from = drawn.transitions_[level];
+        if (to.record.by_names()) numbers.clear();
+        to.record.append(from.record, numbers);
+        to.asides.append(from.asides, numbers);
+    }
+    if (!surface.counts_only()) surface.builder().flush_if_full();
 }
 
 template <int dimension, class Real>
@@ -254,7 +304,7 @@ template <int dimension, class Real>
 NESTGRID_INLINE Decision LevelSet<dimension, Real>::inspect(const View& view, const Split& split) {
     counted_ = counted(view);
     counts_.calls += counted_;
-    if ((counts_.calls & 0xFFFFU) == 0) report_progress(0, 0);
+    if ((counts_.calls & 0xFFFFU) == 0) Base::tell(0, 0);
     const Decision decision = look(view, split);
     if (decision.visit != Visit::skip) counts_.visited += counted_;
     return decision;
@@ -275,12 +325,6 @@ NESTGRID_INLINE Decision LevelSet<dimension, Real>::look(const View& view, const
     return decision;
 }
 
-template <int dimension, class Real>
-void LevelSet<dimension, Real>::undo() {
-    counts_.calls -= counted_;
-    counts_.visited -= counted_;
-}
-
 /// With caps, inspects all leaves, because caps also lie in those that no level passes through.
 template <int dimension, class Real>
 NESTGRID_INLINE Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const Real* values,
@@ -289,19 +333,8 @@ NESTGRID_INLINE Leaves LevelSet<dimension, Real>::leaves(const Rule& rule, const
     const Leaves leaves = search_->cut_leaves(rule, values, which);
     const std::uint64_t before = counts_.calls;
     add(count_ones(which & ~leaves.inspect), count_ones(leaves.extract));
-    if ((before >> 16U) != (counts_.calls >> 16U)) report_progress(0, 0);
+    if ((before >> 16U) != (counts_.calls >> 16U)) Base::tell(0, 0);
     return leaves;
-}
-
-/// Reports the sum of the counts so far and these.
-/// \throw Cancelled where options.progress says so
-template <int dimension, class Real>
-void LevelSet<dimension, Real>::report_progress(std::uint64_t calls, std::uint64_t visited) const {
-    if (!options_->progress) return;
-    TraversalCounts counts = counts_;
-    counts.calls += calls;
-    counts.visited += visited;
-    if (!options_->progress(counts)) throw Cancelled{};
 }
 
 /// Walks the bisections below an element in patches, where elements that stop conform and the

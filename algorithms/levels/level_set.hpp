@@ -7,20 +7,20 @@
 #include <memory>
 #include <vector>
 
+#include <drawing/drawing.hpp>
 #include <levels/aside_contour.hpp>
 #include <levels/hidden_neighbours.hpp>
-#include <levels/level_tasks.hpp>
 #include <levels/normals.hpp>
 #include <levels/patch_level_set.hpp>
 #include <nestgrid/algorithms/ranks.hpp>
-#include <walk/frontier.hpp>
 
 namespace nestgrid::engine {
 
 /// Draws several levels in one traversal; each has a builder of its own.
 template <int dimension, class Real>
-class LevelSet final : public TaskVisitor<Real>, private PatchCounts {
+class LevelSet final : public Drawing<Real>, private PatchCounts {
 public:
+    using Base = Drawing<Real>;
     using View = ElementView<Real>;
     using Builder = SurfaceBuilder<dimension>;
     /// What the walk must carry.
@@ -35,19 +35,10 @@ public:
 
     /// Begins anew with other levels, as many as before, and keeps its memory.
     void begin(const LevelSearch<Real>& search, std::span<const Builder> builders);
-    /// Counts simplices and draws nothing.
-    /// \param most run() throws OverLimit where there are more
-    void count_only(std::uint64_t most);
-
-    /// Draws everything. Collective where the grid is distributed.
-    /// \throw Cancelled, OverLimit, and what the grid, the field and the sinks throw
-    void run(const Executor& executor);
-    /// Hands all that is drawn to the sinks, also where a walk was cancelled.
-    void flush();
-    /// Number of simplices drawn so far.
-    std::uint64_t simplices() const { return tally_.drawn(); }
-    /// Takes the counts and bounds of all ranks together, after run(). Collective.
-    void agree(Ranks& ranks);
+    void run(const Executor& executor) override;
+    void flush() override;
+    void agree(Ranks& ranks) override;
+    void count_only(std::uint64_t most) override;
     /// Sets counts, error bound and memory in the result of level i.
     void report(std::size_t i, Isosurface<dimension>& result) const;
 
@@ -60,16 +51,20 @@ public:
     bool sees_hidden() const override { return records_ || neighbours_.hidden_elements_draw(); }
     bool takes(const View& view) override;
     Decision look(const View& view, const Split& split) override;
-    void undo() override;
     void walk_below(const Walk<Real>& walk, const View& view) override;
-    void restart() override { counts_ = {}; }
 
 private:
-    friend class LevelTasks<dimension, Real>;
+    using Base::counted_;
+    using Base::counts_;
+    using Base::shared;
+    using Base::tally_;
+    using Base::walk_;
 
-    const SharedNodes* shared() const { return walk_->hierarchy().facts().shared; }
+    std::unique_ptr<Base> begin_part(std::unique_ptr<Base> used) override;
     void join(const LevelSet& leader);
-    void walk(const Executor& executor);
+    void add(Base& part) override;
+    void add_part(std::size_t level, const LevelSet& drawn);
+    void walk_alone() override;
     bool knows_by_names(LevelSurface<dimension>& surface) const;
     void extract(std::size_t level, const View& view, unsigned inside, unsigned boundary,
                  bool draws);
@@ -89,14 +84,9 @@ private:
     bool cuts_finest() const;
     bool bisects_slices() const;
     bool is_near_boundary(const View& view) const;
-    void report_progress(std::uint64_t calls, std::uint64_t visited) const;
-    void tick(std::uint64_t calls, std::uint64_t visited) override {
-        report_progress(calls, visited);
-    }
-    void add(std::uint64_t calls, std::uint64_t visited) override {
-        counts_.calls += calls;
-        counts_.visited += visited;
-    }
+    // Of PatchCounts.
+    void tick(std::uint64_t calls, std::uint64_t visited) override { Base::tell(calls, visited); }
+    void add(std::uint64_t calls, std::uint64_t visited) override { Base::count(calls, visited); }
 
     /// The element at hand.
     struct AtHand {
@@ -119,24 +109,20 @@ private:
               aside(cuts, contour, cap, tally, options) {}
     };
 
-    const Walk<Real>* walk_;
     const LevelSearch<Real>* search_;
     const IsosurfaceOptions* options_;
     std::size_t first_attribute_;
+    std::vector<SurfacePart<dimension>> parts_;      // of a task: what its surfaces are drawn into
     std::vector<LevelSurface<dimension>> surfaces_;  // one a level
     std::vector<Transitions<Real>> transitions_;     // one a level
     bool records_ = false;                           // elements may stop beside finer ones
     int finest_level_ = -1;              // a level on which no element has a finer neighbour, or -1
     HiddenNeighbours<Real> neighbours_;  // where caps are drawn beside hidden elements
-    SimplexTally tally_;
     Normals<Real> normals_;
     AtHand at_hand_;
-    TraversalCounts counts_;
-    std::uint64_t counted_ = 1;  // by the last inspect(): 0 where another rank counts the element
     int deepest_ = 0;
     bool bisects_ = false;  // takes() walks bisections in patches
     bool finest_ = false;   // edges are cut on their finest pieces
-    LevelTasks<dimension, Real> tasks_;
 };
 
 }  // namespace nestgrid::engine

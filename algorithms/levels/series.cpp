@@ -52,7 +52,7 @@ public:
             drawing_ = std::make_unique<Drawing>(walk_, *search_, builders, options_,
                                                  levels_.first_attribute);
         }
-        result_.cancelled = engine::run_until_cancelled(*drawing_, executor, shared);
+        result_.cancelled = engine::run_until_cancelled<Real>(*drawing_, executor, shared);
         drawing_->report(0, result_);
         return result_;
     }

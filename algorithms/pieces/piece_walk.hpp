@@ -4,12 +4,13 @@
 // Walks the elements at which discontinuous data stop.
 #pragma once
 
-#include <optional>
+#include <functional>
+#include <memory>
 
+#include <drawing/drawing.hpp>
 #include <nestgrid/algorithms/discontinuous.hpp>
 #include <pieces/corner_values.hpp>
-#include <surfaces/surface_builder.hpp>
-#include <walk/walk.hpp>
+#include <surfaces/level_surface.hpp>
 
 namespace nestgrid::engine {
 
@@ -19,24 +20,38 @@ inline WidenedHierarchy<float> widened(const DiscontinuousData& data, std::size_
     return {data.grid(), in_front + static_cast<std::size_t>(data.components()) - 1};
 }
 
+class PieceWalk;
+
+/// What is drawn of discontinuous data, and how. All is borrowed; tasks share it.
+struct Pieces {
+    const Walk<double>* walk;  ///< of the hierarchy that widened() makes of the data
+    const DiscontinuousData* data;
+    const DiscontinuousOptions* options;
+    std::size_t in_front;                 ///< how many components are in front of the data
+    const ElementDeviations* deviations;  ///< null: only leaves are drawn
+    double threshold = 0;
+    /// Makes a walk that draws what one task walks, or everything.
+    std::function<std::unique_ptr<PieceWalk>(const Pieces&)> make;
+};
+
 /// Draws elements one by one. The walk carries no values: what is drawn gets them here.
-class PieceWalk : public Visitor<double> {
+class PieceWalk : public Drawing<double> {
 public:
-    using View = ElementView<double>;
+    using Base = Drawing<double>;
     static constexpr Needs needs{.values = false, .keys = true, .positions = true};
 
-    /// \param walk of the hierarchy that widened() makes of the data
-    /// \param deviations null: only leaves are drawn
-    /// \param in_front how many components are in front of the data
-    /// All arguments are borrowed.
-    PieceWalk(const Walk<double>& walk, const DiscontinuousData& data,
-              const ElementDeviations* deviations, const DiscontinuousOptions& options,
-              std::size_t in_front);
+    explicit PieceWalk(const Pieces& pieces);
 
-    /// Walks and draws.
-    void run(DiscontinuousSurface& result);
+    void run(const Executor& executor) final { walk_elements(executor); }
+    void count_only(std::uint64_t most) final;
+    /// Moves all that was drawn into a result.
+    void report(DiscontinuousSurface& result);
 
     Decision inspect(const View& view, const Split& split) final;
+    Decision look(const View& view, const Split& split) final;
+    void undo() final;
+    void restart() final;
+    void begin_entry(std::size_t number) final;
     void extract(const View& view) final;
 
 protected:
@@ -48,7 +63,8 @@ protected:
     virtual double draw(const View& view, std::span<double> values) = 0;
 
     const Walk<double>& walk() const { return *walk_; }
-    ~PieceWalk() = default;
+    /// What is drawn into; its elements share no vertices.
+    LevelSurface<3>& surface() { return surface_; }
 
 private:
     /// The range of component 0; infinite where no deviations are known.
@@ -58,20 +74,23 @@ private:
         double greatest() const;
     };
 
-    void count();
+    std::unique_ptr<Base> begin_part(std::unique_ptr<Base> used) final;
+    void add(Base& part) final;
     void raise_error_bound(const View& view, double residual);
 
-    const Walk<double>* walk_;
+    const Pieces* pieces_;
     CornerValues corner_values_;
-    const ElementDeviations* deviations_;
-    const DiscontinuousOptions* options_;
-    std::size_t in_front_;
+    const ElementDeviations* deviations_;  // null: only leaves are drawn
     std::vector<double> values_;
     Range range_;
-    std::size_t next_ = 0;  // entry of the next split element
-    double deviation_ = 0;  // of the element that stops
-    TraversalCounts counts_;
-    double error_bound_ = 0;
+    SurfacePart<3> part_;
+    LevelSurface<3> surface_;
+    std::size_t next_ = 0;    // entry of the next split element
+    std::size_t at_ = 0;      // next_ before the last inspect()
+    std::size_t behind_ = 0;  // entry behind the element of the last inspect() and all below it
+    std::vector<std::size_t> starts_;  // of a leader: next_ at each entry of the frontier
+    const std::vector<std::size_t>* leads_ = nullptr;  // of a part: those of its leader
+    double deviation_ = 0;                             // of the element that stops
 };
 
 /// \throw InvalidInput, GridError as the functions of discontinuous.hpp say
@@ -79,21 +98,11 @@ void require_drawable(const DiscontinuousData& data, int dimension,
                       const DiscontinuousOptions& options);
 
 /// Draws a surface. Measures deviations where the threshold needs them and none are given.
-/// \param make make(walk, deviations, part) returns a PieceWalk that draws into a part
-template <class Make>
+/// \param hierarchy that widened() makes of the data
+/// \param make as Pieces::make
 DiscontinuousSurface draw_pieces(const WidenedHierarchy<float>& hierarchy,
                                  const DiscontinuousData& data, const DiscontinuousOptions& options,
-                                 const Make& make) {
-    std::optional<ElementDeviations> own;
-    const ElementDeviations* deviations = options.deviations;
-    if (deviations == nullptr && options.threshold > 0) deviations = &own.emplace(data);
-    const Walk<double> walk(hierarchy, PieceWalk::needs);
-    SurfacePart<3> part;
-    part.surface.elements = hierarchy.make_elements();
-    DiscontinuousSurface result;
-    make(walk, deviations, part).run(result);
-    result.surface = std::move(part.surface);
-    return result;
-}
+                                 std::size_t in_front, const Executor& executor,
+                                 std::function<std::unique_ptr<PieceWalk>(const Pieces&)> make);
 
 }  // namespace nestgrid::engine

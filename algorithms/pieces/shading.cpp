@@ -12,45 +12,40 @@ namespace {
 
 class PieceShading final : public engine::PieceWalk {
 public:
-    PieceShading(const engine::Walk<double>& walk, const DiscontinuousData& data,
-                 const ElementDeviations* deviations, const DiscontinuousOptions& options,
-                 double scale, engine::SurfacePart<3>& part)
-        : PieceWalk(walk, data, deviations, options, 0),
-          polygon_(walk, {scale, options.flatness}),
-          surface_({part, false, options.elements}, 0) {}
+    PieceShading(const engine::Pieces& pieces, double scale)
+        : PieceWalk(pieces), polygon_(*pieces.walk, {scale, pieces.options->flatness}) {}
 
 private:
     bool of_interest(const View&, const engine::Split&) override { return true; }
     double draw(const View& view, std::span<double>) override {
         polygon_.load(view);
-        polygon_.draw(nullptr, surface_);
+        polygon_.draw(nullptr, surface());
         return polygon_.chord(view.is_leaf());
     }
 
     engine::ElementPolygon<double> polygon_;
-    engine::LevelSurface<3> surface_;
 };
 
 DiscontinuousSurface triangulate(const DiscontinuousData& data, double scale,
-                                 const DiscontinuousOptions& options) {
+                                 const DiscontinuousOptions& options, const Executor& executor) {
     engine::require_drawable(data, 2, options);
     if (!std::isfinite(scale)) {
         throw InvalidInput("the scale of the heights is not a finite number");
     }
-    return engine::draw_pieces(engine::widened(data, 0), data, options,
-                               [&](const auto& walk, const auto* d, auto& part) {
-                                   return PieceShading(walk, data, d, options, scale, part);
-                               });
+    return engine::draw_pieces(
+        engine::widened(data, 0), data, options, 0, executor,
+        [&](const auto& pieces) { return std::make_unique<PieceShading>(pieces, scale); });
 }
 
 }  // namespace
 
-DiscontinuousSurface shading(const DiscontinuousData& data, const DiscontinuousOptions& options) {
-    return triangulate(data, 0, options);
+DiscontinuousSurface shading(const DiscontinuousData& data, const DiscontinuousOptions& options,
+                             const Executor& executor) {
+    return triangulate(data, 0, options, executor);
 }
 DiscontinuousSurface height_field(const DiscontinuousData& data, double scale,
-                                  const DiscontinuousOptions& options) {
-    return triangulate(data, scale, options);
+                                  const DiscontinuousOptions& options, const Executor& executor) {
+    return triangulate(data, scale, options, executor);
 }
 
 }  // namespace nestgrid

@@ -13,13 +13,8 @@ namespace {
 /// Component 0 of the values is the function, the data follow.
 class PieceSlice final : public engine::PieceWalk {
 public:
-    PieceSlice(const engine::Walk<double>& walk, const engine::PositionFunctions& function,
-               const DiscontinuousData& data, const ElementDeviations* deviations,
-               const DiscontinuousOptions& options, engine::SurfacePart<3>& part)
-        : PieceWalk(walk, data, deviations, options, 1),
-          function_{&function},
-          section_(walk),
-          builder_(part, false, options.elements) {}
+    PieceSlice(const engine::Pieces& pieces, const engine::PositionFunctions& function)
+        : PieceWalk(pieces), function_{&function}, section_(*pieces.walk) {}
 
 private:
     bool of_interest(const View& view, const engine::Split& split) override;
@@ -30,7 +25,6 @@ private:
 
     const engine::PositionFunctions* function_;
     engine::ElementSection section_;
-    engine::SurfaceBuilder<3> builder_;
     // The corners of the element that of_interest() was asked about last, and the function there.
     std::array<Point, max_corners> x_{};
     std::array<double, max_corners> f_{};
@@ -52,29 +46,28 @@ double PieceSlice::draw(const View& view, std::span<double> values) {
     const std::span<const Point> x = corners(view);
     const std::size_t stride = walk().components();
     for (std::size_t k = 0; k < x.size(); ++k) values[k * stride] = f_[k];
-    if (!section_.draw(view, builder_) || x.size() == 4) return 0;
+    if (!section_.draw(view, surface().builder()) || x.size() == 4) return 0;
     std::array<double, max_corners> data;
     for (std::size_t k = 0; k < x.size(); ++k) data[k] = values[k * stride + 1];
     return 2 * affine_residual(x, std::span<const double>(data).first(x.size()));
 }
 
 DiscontinuousSurface cut(const DiscontinuousData& data, const LevelFunction& function,
-                         const DiscontinuousOptions& options) {
+                         const DiscontinuousOptions& options, const Executor& executor) {
     engine::require_drawable(data, 3, options);
     const LevelFunction* const functions[] = {&function};
     const engine::WidenedHierarchy<float> hierarchy = engine::widened(data, 1);
     const engine::PositionFunctions placed(functions, hierarchy, options.position_bounds);
-    return engine::draw_pieces(hierarchy, data, options,
-                               [&](const auto& walk, const auto* d, auto& part) {
-                                   return PieceSlice(walk, placed, data, d, options, part);
-                               });
+    return engine::draw_pieces(hierarchy, data, options, 1, executor, [&](const auto& pieces) {
+        return std::make_unique<PieceSlice>(pieces, placed);
+    });
 }
 
 }  // namespace
 
 DiscontinuousSurface slice(const DiscontinuousData& data, const LevelFunction& function,
-                           const DiscontinuousOptions& options) {
-    return cut(data, function, options);
+                           const DiscontinuousOptions& options, const Executor& executor) {
+    return cut(data, function, options, executor);
 }
 
 }  // namespace nestgrid

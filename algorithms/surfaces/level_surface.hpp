@@ -160,6 +160,16 @@ public:
     void raise_position_bound(double bound) { position_bound_ = std::max(position_bound_, bound); }
     double position_bound() const { return position_bound_; }
 
+    /// Adds the counts and bounds of a part.
+    void add_report(const LevelSurface& part) {
+        extracted_ += part.extracted_;
+        limited_ += part.limited_;
+        raise_error_bound(part.error_bound_);
+        raise_off_level(part.off_level_);
+        raise_leaf_error(part.leaf_error_);
+        raise_position_bound(part.position_bound_);
+    }
+
     /// Makes the normals, and merges the vertices at each node (merge_at_nodes.hpp), as far as each
     /// is wanted. Requires that everything is drawn; merging requires a surface of triangles.
     /// Collective where the grid is distributed, which requires keep_names().
