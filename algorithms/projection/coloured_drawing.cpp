@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <graphs/triangulate.hpp>
+#include <height_fields/triangulate.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/collapse_colours.hpp>

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 
+#include <level_sets/leaf_bounds.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/error.hpp>
 #include <ranks/agreement.hpp>
-#include <slices/leaf_bounds.hpp>
 
 namespace nestgrid::engine {
 
