@@ -36,6 +36,8 @@ Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isoval
                          .front());
 }
 
+/// \throw InvalidInput unless low < high, and for caps
+void require_band(double low, double high, const IsosurfaceOptions& options);
 template <int dimension, class Real>
 Isosurface<dimension> isoband(const Hierarchy<Real>& hierarchy, double low, double high,
                               const Criterion& criterion, const Bounds& bounds,

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include <level_sets/draw.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
@@ -216,18 +217,54 @@ template std::vector<Isosurface<3>> detail::draw_isosurfaces(const Prerolls&,
                                                              const Projection&,
                                                              const IsosurfaceOptions&, const Work&);
 
+namespace {
+
+/// Draws level sets of one walk, perhaps within a number of triangles (segments) of all together.
+/// \param dimension of the grid
+/// \param draw draw(hierarchy, criterion, bounds)
+template <class Result, int dimension, class Draw>
+Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double> isovalues,
+                                const Projection& projection, const IsosurfaceOptions& options,
+                                const Work& work, const Draw& draw) {
+    const auto within = [&](const VirtualRefinement& fine) {
+        return draw(fine, fine.criterion(), fine.bounds());
+    };
+    if (auto drawn = engine::within_error<Result>(prerolls, projection, work, dimension, within)) {
+        return *std::move(drawn);
+    }
+    return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
+        const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
+        const Bounds& bounds = criteria.bounds();
+        const TriangleBudget search = engine::threshold_of(projection, work, [&] {
+            const engine::Levels levels = engine::isosurface_levels(hierarchy, isovalues);
+            const auto find = [&](const detail::MakeCriterion& make) {
+                return engine::find_threshold<dimension>(
+                    levels, make, {bounds, bounds.greatest() - bounds.least()},
+                    projection.max_triangles, options, work.executor);
+            };
+            return detail::with_made(engine::criteria_at(criteria), find);
+        });
+        work.begin("drawing");
+        return Projected<Result>{draw(hierarchy, criteria.at(search.threshold), bounds), search};
+    });
+}
+
+}  // namespace
+
 template <int dimension>
 Projected<Isosurface<dimension>> isoband(const Prerolls& prerolls, double low, double high,
                                          const Projection& projection,
                                          const IsosurfaceOptions& options, const Work& work) {
-    engine::check_one_walk(prerolls, projection, "bands");
-    return {engine::draw_once(
-                prerolls, projection, std::array{low, high}, work, dimension,
-                [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
-                    return engine::isoband<dimension>(hierarchy, low, high, criterion, bounds,
-                                                      options, work.executor);
-                }),
-            {.threshold = projection.least_threshold()}};
+    engine::check_first(prerolls, projection, "bands", [&] {
+        engine::refuse_all_but_budgets(projection, "bands");
+        engine::require_band(low, high, options);
+    });
+    return draw_together<Isosurface<dimension>, dimension>(
+        prerolls, std::array{low, high}, projection, options, work,
+        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+            return engine::isoband<dimension>(hierarchy, low, high, criterion, bounds, options,
+                                              work.executor);
+        });
 }
 template Projected<Isosurface<2>> isoband<2>(const Prerolls&, double, double, const Projection&,
                                              const IsosurfaceOptions&, const Work&);
@@ -237,14 +274,13 @@ template Projected<Isosurface<3>> isoband<3>(const Prerolls&, double, double, co
 Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> values,
                              const Projection& projection, const IsosurfaceOptions& options,
                              const Work& work) {
-    engine::check_one_walk(prerolls, projection, "isolines");
-    return {engine::draw_once(
-                prerolls, projection, values, work, 2,
-                [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
-                    return engine::isolines(hierarchy, values, criterion, bounds, options,
-                                            work.executor);
-                }),
-            {.threshold = projection.least_threshold()}};
+    engine::check_first(prerolls, projection, "isolines",
+                        [&] { engine::refuse_all_but_budgets(projection, "isolines"); });
+    return draw_together<Isolines, 2>(
+        prerolls, values, projection, options, work,
+        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+            return engine::isolines(hierarchy, values, criterion, bounds, options, work.executor);
+        });
 }
 
 ProbeResult probe(const Prerolls& prerolls, std::span<const Point> points,

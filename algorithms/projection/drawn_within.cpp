@@ -36,13 +36,17 @@ void refuse_slice_distance(const Projection& projection) {
     }
 }
 
+void refuse_all_but_budgets(const Projection& projection, const char* drawing) {
+    refuse_collapse(projection, drawing);
+    refuse_distance(projection);
+    refuse_slice_distance(projection);
+    refuse_tolerance(projection);
+}
+
 void check_one_walk(const Prerolls& prerolls, const Projection& projection, const char* drawing) {
     check_first(prerolls, projection, drawing, [&] {
-        refuse_collapse(projection, drawing);
+        refuse_all_but_budgets(projection, drawing);
         refuse_budget(projection, drawing);
-        refuse_distance(projection);
-        refuse_slice_distance(projection);
-        refuse_tolerance(projection);
     });
 }
 

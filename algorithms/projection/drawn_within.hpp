@@ -22,6 +22,8 @@ void refuse_budget(const Projection& projection, const char* drawing);
 void refuse_distance(const Projection& projection);
 void refuse_tolerance(const Projection& projection);
 void refuse_slice_distance(const Projection& projection);
+/// Refuses what is more than a threshold or a number of triangles.
+void refuse_all_but_budgets(const Projection& projection, const char* drawing);
 /// Checks what a drawing is asked for, before anything is drawn or exchanged: on ranks, all end
 /// alike.
 /// \param refuse throws for what this drawing does not do

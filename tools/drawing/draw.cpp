@@ -124,7 +124,7 @@ private:
             field_.least = least;
             field_.greatest = greatest;
         }
-        if (request_.isovalue && field_.surfaces.empty()) {
+        if (request_.isovalue && !request_.upper && field_.surfaces.empty()) {
             field_.outside = outside_range(*request_.isovalue, least, greatest);
         }
         // The range of all surfaces is known too late for a film: that of the frames takes its

@@ -8,6 +8,7 @@
 
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
+#include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/error.hpp>
 
@@ -134,10 +135,16 @@ private:
         const bool searches = projection.max_triangles > 0;
         const auto options = isosurface_options(searches || executor_.concurrency() == 1);
         if (prerolls().field().dimension() == 3) {
-            return take(drawn,
-                        nestgrid::isosurface<3>(prerolls(), isovalue, projection, options, work));
+            return take(drawn, request_.upper
+                                   ? isoband<3>(prerolls(), isovalue, *request_.upper, projection,
+                                                options, work)
+                                   : nestgrid::isosurface<3>(prerolls(), isovalue, projection,
+                                                             options, work));
         }
-        auto lines = nestgrid::isosurface<2>(prerolls(), isovalue, projection, options, work);
+        auto lines =
+            request_.upper
+                ? isoband<2>(prerolls(), isovalue, *request_.upper, projection, options, work)
+                : nestgrid::isosurface<2>(prerolls(), isovalue, projection, options, work);
         take_facts(drawn, lines);
         drawn.segments = std::move(lines.surface);
         drawn.result = {lines, {}, lines.counts};

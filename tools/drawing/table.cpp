@@ -104,6 +104,7 @@ void report_facts(const DrawnField& field, const DrawingRequest& request, Report
     report_field(field.name, field.length_unit, report);
     report_range({field.least, field.greatest}, report);
     if (request.isovalue) report.add("isovalue", *request.isovalue);
+    if (request.upper) report.add("upper_isovalue", *request.upper);
     report.add("nodes", std::uint64_t{field.nodes});
     report.add("leaf_elements", std::uint64_t{field.leaf_elements});
     if (field.preroll_seconds > 0) {
