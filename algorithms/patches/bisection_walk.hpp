@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <patches/patch_walk.hpp>
+#include <patches/patch_descent.hpp>
 
 namespace nestgrid {
 

@@ -9,6 +9,7 @@
 // that order, and the walk finishes what is below a batch before it begins the next one. An element
 // that stops travels down with the patches before it, until the walk has finished these.
 // Memory: one batch for each level of patches, on the stack: about 25 KB in single precision.
+// The members are defined in patch_descent.hpp and patch_walk_nodes.hpp.
 #pragma once
 
 #include <cstring>
@@ -200,6 +201,3 @@ private:
 };
 
 }  // namespace nestgrid
-
-#include <patches/patch_walk_nodes.hpp>
-#include <patches/patch_walk_steps.hpp>

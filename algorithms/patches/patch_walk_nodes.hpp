@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // How PatchWalk asks grid and field for new nodes, their keys and values: eight at once, or in
-// rows. Included at the end of patch_walk.hpp.
+// rows.
 #pragma once
+
+#include <patches/patch_walk.hpp>
 
 namespace nestgrid {
 

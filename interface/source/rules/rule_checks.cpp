@@ -8,7 +8,7 @@
 
 #include <nestgrid/rule.hpp>
 
-#include "rule_steps.hpp"
+#include "derived_members.hpp"
 
 namespace nestgrid {
 

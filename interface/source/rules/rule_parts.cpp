@@ -11,7 +11,7 @@
 #include <nestgrid/error.hpp>
 #include <nestgrid/rule.hpp>
 
-#include "rule_steps.hpp"
+#include "derived_members.hpp"
 
 namespace nestgrid::detail {
 

@@ -11,7 +11,7 @@
 #include <nestgrid/detail/shape_functions.hpp>
 #include <nestgrid/rule_table.hpp>
 
-#include "rule_steps.hpp"
+#include "derived_members.hpp"
 
 namespace nestgrid {
 

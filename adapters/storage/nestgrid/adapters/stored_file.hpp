@@ -12,51 +12,23 @@
 // places and references must be just what writing would have produced.
 #pragma once
 
-#include <bit>
+#include <cstring>
 #include <filesystem>
-#include <optional>
+#include <fstream>
 #include <string>
 #include <vector>
 
-#include <nestgrid/adapters/stored_grid.hpp>
-#include <nestgrid/algorithms/compressed_field.hpp>
+#include <nestgrid/adapters/grid_file.hpp>
+#include <nestgrid/adapters/stored_hierarchy.hpp>
+#include <nestgrid/adapters/values_file.hpp>
 
 namespace nestgrid {
-
-/// Values at the nodes, by node number; those of several frames one after the other.
-struct NamedField {
-    std::string name;
-    std::vector<double> values;  ///< one for each node of each frame; none where encoded
-    /// One for each frame, where values are encoded.
-    std::vector<CompressedValues<double>> encoded{};
-};
 
 /// What a file says about itself.
 struct HierarchyHeader {
     std::string family;  ///< Family::name
     int dimension = 0;
     int corners = 0;  ///< of an element at most: Family::max_corners
-};
-
-/// What a .nestgrid file held.
-template <class Family>
-struct StoredHierarchy {
-    StoredGrid<Family> grid;
-    std::vector<NamedField> fields;
-    std::vector<double> times{0};  ///< of the frames, finite and ascending
-
-    /// The values of a frame of a field that is not encoded.
-    std::span<const double> frame(const NamedField& field, std::size_t i) const {
-        return std::span(field.values).subspan(i * grid.node_count(), grid.node_count());
-    }
-};
-
-/// What a .nestgrid file holds beside the grid.
-struct StoredFileOptions {
-    std::vector<double> times{0};  ///< of the frames, finite and ascending
-    /// How values are encoded; nothing: as they are. Nodes that hang lose their values, and have
-    /// the mean of their parents when they are decoded.
-    std::optional<CompressionOptions> compression{};
 };
 
 /// Writes a grid and fields on it. The file appears when it is complete. One frame of values as
@@ -71,20 +43,76 @@ void write_hierarchy(const StoredGrid<Family>& grid, const std::filesystem::path
 /// \throw IoError for a file that cannot be read or is no hierarchy
 HierarchyHeader read_hierarchy_header(const std::filesystem::path& path);
 
-/// What reading makes of encoded values.
-enum class Encoded { decode, keep };
-
 /// \param encoded `keep` leaves encoded values in NamedField::encoded, for a CompressedField
 /// \throw IoError for a file that cannot be read, is damaged, of another version or family
 template <class Family>
 StoredHierarchy<Family> read_hierarchy(const std::filesystem::path& path,
                                        Encoded encoded = Encoded::decode);
 
-/// The values at the nodes of a grid by node number; 0 at numbers that are not in use.
-/// \param encoded as many values as the grid has nodes
 template <class Family>
-std::vector<double> decode(const StoredGrid<Family>& grid, const CompressedValues<double>& encoded);
+void write_hierarchy(const StoredGrid<Family>& grid, const std::filesystem::path& path,
+                     const std::vector<NamedField>& fields, const StoredFileOptions& options) {
+    detail::check_values(fields, grid.node_count(), options.times);
+    detail::FileHeader header;
+    header.version = detail::version_for(fields, options);
+    detail::Writer body;
+    detail::GridFile<Family>::write(grid, body);
+    if (header.version == 1) {
+        detail::write_plain(fields, body);
+    } else {
+        detail::write_frames(grid, fields, options, body);
+    }
+    header.dimension = static_cast<std::uint32_t>(Family::dimension);
+    std::strncpy(header.family.data(), Family::name, header.family.size() - 1);
+    header.corners = static_cast<std::uint32_t>(Family::max_corners);
+    header.options = detail::options(grid.family());
+    detail::write_file(path, header, body.bytes);
+}
+
+inline HierarchyHeader read_hierarchy_header(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    const detail::FileHeader header = detail::read_file_header(file, path);
+    return {detail::text(header.family), static_cast<int>(header.dimension),
+            static_cast<int>(header.corners)};
+}
+
+template <class Family>
+StoredHierarchy<Family> read_hierarchy(const std::filesystem::path& path, Encoded encoded) {
+    std::ifstream file(path, std::ios::binary);
+    const detail::FileHeader header = detail::read_file_header(file, path);
+    if (detail::text(header.family) != Family::name ||
+        header.dimension != static_cast<std::uint32_t>(Family::dimension) ||
+        header.corners != static_cast<std::uint32_t>(Family::max_corners)) {
+        throw IoError(detail::quoted(path) + " holds a " + detail::text(header.family) +
+                      " hierarchy of dimension " + std::to_string(header.dimension) +
+                      " with at most " + std::to_string(header.corners) + " corners");
+    }
+    std::error_code failed;
+    const std::uintmax_t size = std::filesystem::file_size(path, failed);
+    if (failed || size < sizeof(header) || size - sizeof(header) != header.body) {
+        throw IoError(detail::quoted(path) + " is damaged: it should be " +
+                      std::to_string(header.body + sizeof(header)) + " bytes long and is " +
+                      std::to_string(size));
+    }
+    std::vector<char> bytes(static_cast<std::size_t>(header.body));
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
+        throw IoError(detail::quoted(path) + " cannot be read");
+    }
+    boost::crc_32_type crc;
+    crc.process_bytes(bytes.data(), bytes.size());
+    if (crc.checksum() != header.body_checksum) {
+        throw IoError(detail::quoted(path) + " is damaged: its checksum is wrong");
+    }
+    detail::Reader body(std::move(bytes), detail::quoted(path));
+    StoredHierarchy<Family> stored{
+        detail::GridFile<Family>::read(body, detail::from_options<Family>(header.options)), {}};
+    if (header.version == 1) {
+        detail::read_plain(body, stored);
+    } else {
+        detail::read_frames(body, encoded, stored);
+    }
+    if (!body.at_end()) body.fail("there is something after its end");
+    return stored;
+}
 
 }  // namespace nestgrid
-
-#include <nestgrid/adapters/stored_file_steps.hpp>

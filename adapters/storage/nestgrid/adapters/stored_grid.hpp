@@ -20,27 +20,13 @@
 
 #include <nestgrid/adapters/coarse_checks.hpp>
 #include <nestgrid/adapters/family.hpp>
+#include <nestgrid/adapters/leaf_walk.hpp>
+#include <nestgrid/adapters/node_field.hpp>
 #include <nestgrid/adapters/work_tree.hpp>
 #include <nestgrid/detail/constants.hpp>
-#include <nestgrid/detail/made_for.hpp>
 #include <nestgrid/optional.hpp>
 
 namespace nestgrid {
-
-/// A leaf, as a marker sees it.
-struct Leaf {
-    Shape shape = Shape::point;
-    int level = 0;                         ///< refinements above it
-    std::size_t coarse = 0;                ///< coarse element it descends from
-    std::span<const Point> corners;        ///< positions
-    std::span<const std::uint32_t> nodes;  ///< numbers of the corners
-
-    Point centre() const {
-        Point sum{0, 0, 0};
-        for (const Point& x : corners) sum = sum + x;
-        return 1.0 / static_cast<double>(corners.size()) * sum;
-    }
-};
 
 /// What an adaptation has done.
 struct Adaptation {
@@ -68,10 +54,23 @@ struct Adaptation {
 };
 
 namespace detail {
+
 template <class Family>
 class Rewrite;
 template <class Family>
 class GridFile;
+
+/// std::popcount without the call that it is on processors that may lack the instruction.
+constexpr std::uint32_t count_ones(std::uint32_t x) {
+#if defined(__POPCNT__)
+    return static_cast<std::uint32_t>(std::popcount(x));
+#else
+    x -= x >> 1U & 0x55555555U;
+    x = (x & 0x33333333U) + (x >> 2U & 0x33333333U);
+    return ((x + (x >> 4U)) & 0x0F0F0F0FU) * 0x01010101U >> 24U;
+#endif
+}
+
 }  // namespace detail
 
 /// A nested grid that owns its hierarchy. A family says which shapes and rules there are and what
@@ -255,46 +254,111 @@ private:
     std::uint64_t epoch_ = 0;
 };
 
-/// Values at the nodes of a stored grid, by node number, borrowed.
-template <class Grid, class Real>
-class NodeField {
-public:
-    using value_type = Real;
-    using Element = typename Grid::Element;
-
-    /// \throw InvalidInput where there is not one value per node number
-    NodeField(const Grid& grid, std::span<const Real> values)
-        : grid_{&grid}, values_{values}, made_for_{grid} {
-        if (values.size() != grid.node_count()) {
-            throw InvalidInput("the field has " + std::to_string(values.size()) +
-                               " values, but the grid " + std::to_string(grid.node_count()) +
-                               " nodes");
+template <class Family>
+StoredGrid<Family>::StoredGrid(CoarseGrid coarse, const Family& family, const CoarseChecks& checks)
+    : coarse_{std::move(coarse)}, family_{family} {
+    check_and_orient(coarse_, checks);
+    for (std::size_t i = 0; i < coarse_.element_count(); ++i) {
+        if (!Family::refines(coarse_.shapes[i])) {
+            throw InvalidInput(std::string("the family ") + Family::name + " has no rule for a " +
+                               std::string(topology(coarse_.shapes[i]).name) + " (element " +
+                               std::to_string(i) + ")");
         }
     }
-    NodeField(const Grid& grid, const std::vector<Real>& values)
-        : NodeField(grid, std::span<const Real>(values)) {}
+    orientation_ = detail::prepare(family_, coarse_);
+    root_.assign(coarse_.element_count(), none_);
+    leaf_count_ = coarse_.element_count();
+    node_count_ = used_node_count_ = coarse_.nodes.size();
+}
 
-    /// \throw GridError where the grid has changed since the field was made
-    NodeMask coarse_values(std::size_t i, std::span<Real> out) const {
-        made_for_.require_same(*grid_, "the field");
-        const auto nodes = grid_->coarse_grid().element(i);
-        for (std::size_t k = 0; k < nodes.size(); ++k) out[k] = values_[nodes[k]];
-        return 0;
+template <class Family>
+auto StoredGrid<Family>::coarse(std::size_t i) const -> CoarseElement<Element> {
+    CoarseElement<Element> c;
+    c.shape = coarse_.shapes[i];
+    c.orientation = orientation_[i];
+    const auto nodes = coarse_.element(i);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        c.corners[k] = coarse_.nodes[nodes[k]];
+        c.ids[k] = c.element.corner[k] = nodes[k];
     }
-    NodeMask new_values(const Element& e, NodeMask, std::span<Real> out,
-                        typename Grid::Context& context) const {
-        const std::span<const std::uint32_t> nodes = grid_->new_nodes(e, context);
-        for (std::size_t k = 0; k < nodes.size(); ++k) out[k] = values_[nodes[k]];
-        return 0;
-    }
+    c.element.place = {root_[i], static_cast<std::uint16_t>(c.shape), 0, 0};
+    return c;
+}
 
-private:
-    const Grid* grid_;
-    std::span<const Real> values_;
-    detail::MadeFor made_for_;
-};
+template <class Family>
+std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
+                                                             Context& context) const {
+    const Place& place = e.place;
+    auto& known = context.known(place);
+    if (known.place == place) return {known.node.data(), known.count};
+    const Record r = record(place);
+    const Pattern& pattern = table_[place.pattern];
+    const auto& entity_of_exit = pattern.exits[place.exit].entity;
+    const Pattern::Inner& inner = table_[code_of(place)].inner[place.inner];
+    std::array<std::uint32_t, max_entities / 32> before;  // each word of the mask
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < pattern.mask_words(); ++i) {
+        before[i] = sum;
+        sum += detail::count_ones(r.mask[i]);
+    }
+    const std::size_t count = inner.entity.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const unsigned entity = entity_of_exit[inner.entity[k]];
+        const std::uint32_t lower = r.mask[entity / 32] & ((1U << entity % 32) - 1U);
+        known.node[k] = r.references[before[entity / 32] + detail::count_ones(lower)];
+    }
+    known.place = place;
+    known.count = static_cast<std::uint32_t>(count);
+    return {known.node.data(), count};
+}
+
+template <class Family>
+void StoredGrid<Family>::children(const Element& e, std::span<Element> out,
+                                  Context& context) const {
+    const unsigned code = code_of(e.place);
+    const Pattern::Inner& inner = table_[code].inner[e.place.inner];
+    const Rule& rule = *table_.rule(inner.rule).rule;
+    std::array<std::uint32_t, static_cast<std::size_t>(max_corners + max_new_nodes)> node;
+    const auto corners = static_cast<std::size_t>(rule.corner_count());
+    std::copy_n(e.corner.begin(), corners, node.begin());
+    std::ranges::copy(new_nodes(e, context), node.begin() + rule.corner_count());
+    const std::uint32_t below = link(e.place);
+    for (std::size_t c = 0; c < out.size(); ++c) {
+        const Child& child = rule.children[c];
+        Element& o = out[c];
+        for (std::size_t i = 0; i < topology(child.shape).corners; ++i) {
+            o.corner[i] = node[child.corner[i]];
+        }
+        const Pattern::Target target = inner.child[c];
+        o.place = target.exit ? Place{below, static_cast<std::uint16_t>(code), target.number, 0}
+                              : Place{e.place.record, e.place.pattern, e.place.exit, target.number};
+    }
+}
+
+template <class Family>
+template <class Marker>
+Adaptation StoredGrid<Family>::adapt(Marker&& marker) {
+    return detail::Rewrite<Family>(*this).run(marker);
+}
+
+template <class Family>
+template <class Function>
+void StoredGrid<Family>::for_each_leaf(Function&& function) const {
+    const auto visit = [&](const Leaf& element, bool is_leaf) {
+        if (is_leaf) function(element);
+    };
+    detail::PositionWalk<StoredGrid, decltype(visit)>(*this, visit).run();
+}
+
+template <class Family>
+std::vector<Point> StoredGrid<Family>::node_positions() const {
+    std::vector<Point> x(node_count_, Point{0, 0, 0});
+    for_each_leaf([&](const Leaf& leaf) {
+        for (std::size_t i = 0; i < leaf.nodes.size(); ++i) x[leaf.nodes[i]] = leaf.corners[i];
+    });
+    return x;
+}
 
 }  // namespace nestgrid
 
 #include <nestgrid/adapters/adapt.hpp>
-#include <nestgrid/adapters/stored_grid_steps.hpp>

@@ -4,8 +4,8 @@
 // TetGen as a mesher of piecewise linear complexes; included by tetgen.hpp.
 #pragma once
 
+#include <nestgrid/adapters/tetgen_calls.hpp>
 #include <nestgrid/adapters/tetgen_checks.hpp>
-#include <nestgrid/adapters/tetgen_steps.hpp>
 
 namespace nestgrid {
 

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of PatchWalk. Included at the end of patch_walk.hpp.
+// How PatchWalk goes down: from a batch of patches to the batches below it.
 #pragma once
+
+#include <patches/patch_walk_nodes.hpp>
 
 namespace nestgrid {
 

@@ -2,15 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The part of a file that holds values: of one frame as they are (version 1), or of several frames,
-// each as it is or encoded (version 2). Included by stored_file_steps.hpp.
+// each as it is or encoded (version 2).
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
-namespace nestgrid {
+#include <nestgrid/adapters/file_bytes.hpp>
+#include <nestgrid/adapters/stored_hierarchy.hpp>
 
-namespace detail {
+namespace nestgrid::detail {
 
 /// How the values of a frame are kept in version 2.
 enum class Kept : std::uint32_t { plain = 0, compressed = 1 };
@@ -167,64 +169,4 @@ void read_frames(Reader& in, Encoded encoded, StoredHierarchy<Family>& stored) {
     }
 }
 
-/// Decodes values from coarser to finer elements, so that those of all parents are known.
-template <class Family>
-class Decoder {
-public:
-    using Grid = StoredGrid<Family>;
-
-    Decoder(const Grid& grid, const CompressedValues<double>& encoded)
-        : grid_{grid}, encoded_{encoded}, values_(grid.node_count(), 0) {}
-
-    std::vector<double> run() {
-        for (std::size_t i = 0; i < grid_.coarse_count(); ++i) {
-            const auto coarse = grid_.coarse(i);
-            const auto nodes = std::span(coarse.ids).first(topology(coarse.shape).corners);
-            std::array<double, max_corners> out;
-            encoded_.decode_coarse(nodes, std::span(out).first(nodes.size()));
-            for (std::size_t k = 0; k < nodes.size(); ++k) values_[nodes[k]] = out[k];
-            visit(coarse.element);
-        }
-        return std::move(values_);
-    }
-
-private:
-    void visit(const typename Grid::Element& e) {
-        const Rule* const rule = grid_.split(e);
-        if (rule == nullptr) return;
-        set_new_nodes(e, *rule);
-        std::array<typename Grid::Element, static_cast<std::size_t>(Grid::max_children)> child;
-        const auto children = std::span(child).first(rule->children.size());
-        grid_.children(e, children, context_);
-        for (const auto& each : children) visit(each);
-    }
-
-    void set_new_nodes(const typename Grid::Element& e, const Rule& rule) {
-        std::array<NodeKey, max_new_nodes> keys;
-        const auto nodes = std::span(keys).first(rule.new_nodes.size());
-        grid_.new_keys(e, nodes, context_);
-        NodeMask hanging = 0;
-        if constexpr (!Family::conforming) hanging = grid_.constrained(e, context_);
-        std::array<double, max_corners> corner;
-        std::array<double, max_new_nodes> made;
-        const auto corners = std::span(corner).first(static_cast<std::size_t>(rule.corner_count()));
-        for (std::size_t k = 0; k < corners.size(); ++k) corner[k] = values_[e.corner[k]];
-        encoded_.decode_split(rule, hanging, nodes, corners, std::span(made).first(nodes.size()));
-        for (std::size_t n = 0; n < nodes.size(); ++n) values_[nodes[n]] = made[n];
-    }
-
-    const Grid& grid_;
-    const CompressedValues<double>& encoded_;
-    typename Grid::Context context_;
-    std::vector<double> values_;
-};
-
-}  // namespace detail
-
-template <class Family>
-std::vector<double> decode(const StoredGrid<Family>& grid,
-                           const CompressedValues<double>& encoded) {
-    return detail::Decoder<Family>(grid, encoded).run();
-}
-
-}  // namespace nestgrid
+}  // namespace nestgrid::detail
