@@ -80,8 +80,7 @@ void LevelTasks<dimension, Real>::add(const Task& task, LevelSet<dimension, Real
         if (leader.records_) {
             auto& to = leader.transitions_[i];
             const auto& from = drawn.transitions_[i];
-            if (to.record.by_names()) numbers.clear();
-            to.record.append(from.record, numbers);
+            numbers = to.record.append(from.record, std::move(numbers));
             to.asides.append(from.asides, numbers);
         }
         if (!surface.counts_only()) surface.builder().flush_if_full();
