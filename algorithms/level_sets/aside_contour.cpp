@@ -31,114 +31,127 @@ bool is_whole(Shape shape, unsigned inside) {
     return inside == (1U << topology(shape).corners) - 1;
 }
 
+/// Those of some faces of an element that are part of a closed face, one bit each.
+template <class Real>
+unsigned closed_among(const ClosedParts<Real>& closed, unsigned faces) {
+    if (!closed.any_face) return 0;
+    unsigned result = 0;
+    for (unsigned left = faces; left != 0; left &= left - 1) {
+        const auto f = lowest(left);
+        result |= unsigned{closed.face(f) != nullptr} << f;
+    }
+    return result;
+}
+
 }  // namespace
 
 template <int dimension, class Real>
-auto AsideContour<dimension, Real>::find_vertices(DrawnSurface<dimension>& surface,
-                                                  const Contour* plain, unsigned inside)
-    -> Vertices {
-    if (plain != nullptr) return contour_->plain_vertices(surface, *plain, inside);
-    contour_->begin(surface);
-    Vertices vertices;
-    const unsigned edges = contour_->table(cuts_->view().shape).cut_edges(inside);
-    for (unsigned left = edges; left != 0; left &= left - 1) {
-        const auto edge = lowest<std::uint8_t>(left);
-        vertices[edge] = contour_->of_surface(contour_->vertex(edge));
-    }
-    return vertices;
-}
-
-template <int dimension, class Real>
-void AsideContour<dimension, Real>::record(TransitionContours& record, unsigned inside,
-                                           unsigned capped, const Vertices& vertices) {
-    const View& view = cuts_->view();
-    if (!is_whole(view.shape, inside)) {
-        // Beyond the other faces of a hidden element caps end where its neighbours draw them.
-        const bool some = options_->cap && view.member->hidden == Hidden::wholly;
-        const unsigned cut_faces = contour_->table(view.shape).cut_faces(inside);
-        record_transitions(*cuts_, some ? cut_faces & capped : cut_faces, inside, vertices, record);
-    }
-    if (capped != 0) cap_->record(inside, capped, record);
-}
-
-/// The element at hand, without what is kept of it in lists.
-template <int dimension, class Real>
-AsideElement AsideContour<dimension, Real>::describe(unsigned inside, unsigned capped,
-                                                     unsigned boundary) const {
+void AsideContour<dimension, Real>::begin(unsigned inside, unsigned capped, bool put_aside) {
     const View& view = cuts_->view();
     const ContourTable& table = contour_->table(view.shape);
-    AsideElement e{};
-    e.level = static_cast<std::uint16_t>(view.level);
-    e.shape = view.shape;
-    e.inside = static_cast<std::uint8_t>(inside);
-    e.mirrored = view.orientation < 0;
-    e.beyond = view.member->hidden == Hidden::wholly;
-    e.capped = static_cast<std::uint8_t>(capped);
-    unsigned edges = table.cut_edges(inside);
-    if (e.beyond) edges &= edges_of(view.shape, capped);
-    e.edges = static_cast<std::uint16_t>(edges);
-    e.has_corners =
-        options_->reference || options_->at_nodes || capped != 0 || table.plain(inside) == nullptr;
-    if (e.beyond) return e;
-    e.faces = static_cast<std::uint8_t>(table.cut_faces(inside));
-    e.joins = static_cast<std::uint8_t>(contour_->own_joins(table.alternating(inside)));
-    e.boundary = static_cast<std::uint8_t>(boundary);
-    return e;
+    const unsigned cut_edges = table.cut_edges(inside);
+    unsigned cut_faces = table.cut_faces(inside);
+    aside_.beyond = view.member->hidden == Hidden::wholly;
+    aside_.inside = static_cast<std::uint8_t>(inside);
+    aside_.capped = static_cast<std::uint8_t>(capped);
+    aside_.faces = static_cast<std::uint8_t>(aside_.beyond ? 0U : cut_faces);
+    aside_.edges = static_cast<std::uint16_t>(
+        aside_.beyond ? cut_edges & edges_of(view.shape, capped) : cut_edges);
+    put_aside_ = put_aside;
+    // Beyond the other faces of a hidden element caps end where its neighbours draw them.
+    if (options_->cap && aside_.beyond) cut_faces &= capped;
+    closed_faces_ = closed_among(view.closed, cut_faces);
+}
+
+template <int dimension, class Real>
+void AsideContour<dimension, Real>::find_vertices(DrawnSurface<dimension>& surface,
+                                                  const Contour* plain) {
+    if (plain != nullptr) {
+        aside_.vertex = contour_->plain_vertices(surface, *plain, aside_.inside);
+        return;
+    }
+    contour_->begin(surface);
+    const unsigned edges = contour_->table(cuts_->view().shape).cut_edges(aside_.inside);
+    for (unsigned left = edges; left != 0; left &= left - 1) {
+        const auto edge = lowest<std::uint8_t>(left);
+        aside_.vertex[edge] = contour_->of_surface(contour_->vertex(edge));
+    }
+}
+
+template <int dimension, class Real>
+void AsideContour<dimension, Real>::find_vertices(TransitionContours& record) {
+    const Shape shape = cuts_->view().shape;
+    unsigned edges = put_aside_ ? aside_.edges : 0U;
+    if (!put_aside_ || aside_.beyond) {
+        edges |= edges_of(shape, closed_faces_) & contour_->table(shape).cut_edges(aside_.inside);
+    }
+    std::array<KeyPair, max_edges> names;  // fetched at once, so that none waits for another
+    for (unsigned left = edges; left != 0; left &= left - 1) {
+        const auto edge = lowest<std::uint8_t>(left);
+        names[edge] = cuts_->name(edge);
+        record.expect(names[edge]);
+    }
+    for (unsigned left = edges; left != 0; left &= left - 1) {
+        const auto edge = lowest<std::uint8_t>(left);
+        aside_.vertex[edge] = record.vertex(names[edge], [&] { return cuts_->cut(edge); });
+    }
+}
+
+template <int dimension, class Real>
+void AsideContour<dimension, Real>::record(TransitionContours& record) {
+    if (closed_faces_ != 0) {
+        record_transitions(*cuts_, closed_faces_, aside_.inside, aside_.vertex, record);
+    }
+    if (aside_.capped != 0) cap_->record(aside_.inside, aside_.capped, record);
+}
+
+/// Completes what is kept of the element at hand.
+template <int dimension, class Real>
+void AsideContour<dimension, Real>::describe(unsigned boundary) {
+    const View& view = cuts_->view();
+    const ContourTable& table = contour_->table(view.shape);
+    const unsigned alternating = aside_.beyond ? 0U : table.alternating(aside_.inside);
+    aside_.level = static_cast<std::uint16_t>(view.level);
+    aside_.shape = view.shape;
+    aside_.mirrored = view.orientation < 0;
+    aside_.joins = static_cast<std::uint8_t>(contour_->own_joins(alternating));
+    aside_.boundary = static_cast<std::uint8_t>(aside_.beyond ? 0U : boundary);
+    aside_.has_corners = options_->reference || options_->at_nodes || aside_.capped != 0 ||
+                         table.plain(aside_.inside) == nullptr;
+    if (aside_.has_corners) {
+        aside_.key = cuts_->keys().data();
+        aside_.x = cuts_->positions().data();
+        aside_.value = view.value;
+    }
+    find_face_keys();
 }
 
 template <int dimension, class Real>
 void AsideContour<dimension, Real>::put_aside(const DrawnSurface<dimension>& surface,
-                                              Transitions<Real>& transitions, unsigned inside,
-                                              unsigned capped, unsigned boundary,
-                                              const Vertices& vertices) {
+                                              Transitions<Real>& transitions, unsigned boundary) {
     const View& view = cuts_->view();
-    Asides<Real>& asides = transitions.asides;
-    const AsideElement e = describe(inside, capped, boundary);
-    asides.add(e);
-    keep_vertices(transitions, e.edges, surface.counts_only(), vertices);
-    keep_face_keys(asides, e.faces);
-    if (e.has_corners) {
-        asides.add_corners(std::span(cuts_->keys()).first(view.corner_count()),
-                           cuts_->positions().data(), view.value);
+    describe(boundary);
+    std::array<NodeKey, max_edges> edge_keys;
+    if (aside_.capped != 0) {
+        for (std::uint8_t i = 0; i < view.topology().edges; ++i) edge_keys[i] = cap_->edge_key(i);
+        aside_.edge_key = edge_keys.data();
     }
-    if (e.capped != 0) {
-        std::array<NodeKey, max_edges> keys;
-        const std::uint8_t edges = view.topology().edges;
-        for (std::uint8_t i = 0; i < edges; ++i) keys[i] = cap_->edge_key(i);
-        asides.add_edge_keys(std::span(keys).first(edges));
-    }
-    if (surface.builder().keeps_elements()) asides.add_handle(view.element());
-    if (!e.beyond && !is_whole(e.shape, inside)) tally_->add_later(1);
-}
-
-/// Keeps the vertices on some edges: their numbers, or else their cuts; where simplices are only
-/// counted, the names of these.
-template <int dimension, class Real>
-void AsideContour<dimension, Real>::keep_vertices(Transitions<Real>& transitions, unsigned edges,
-                                                  bool counts_only,
-                                                  const Vertices& vertices) const {
-    for (unsigned left = edges; left != 0; left &= left - 1) {
-        const auto edge = lowest<std::uint8_t>(left);
-        if (!transitions.record.by_names()) {
-            transitions.asides.add_vertex(vertices[edge]);
-        } else if (counts_only) {
-            transitions.asides.add_name(cuts_->name(edge));
-        } else {
-            transitions.asides.add_cut(cuts_->cut(edge));
-        }
-    }
+    transitions.asides.add(aside_);
+    if (surface.builder().keeps_elements()) transitions.asides.add_handle(view.element());
+    if (!aside_.beyond && !is_whole(view.shape, aside_.inside)) tally_->add_later(1);
 }
 
 template <int dimension, class Real>
-void AsideContour<dimension, Real>::keep_face_keys(Asides<Real>& asides, unsigned faces) const {
+void AsideContour<dimension, Real>::find_face_keys() {
     const Topology& t = cuts_->view().topology();
     std::array<NodeKey, max_corners> mixed;
     for (std::size_t i = 0; i < t.corners; ++i) mixed[i] = nestgrid::detail::mix(cuts_->keys()[i]);
-    for (unsigned left = faces; left != 0; left &= left - 1) {
-        const FaceTopology& face = t.face[lowest(left)];
+    for (unsigned left = aside_.faces; left != 0; left &= left - 1) {
+        const auto f = lowest(left);
         FaceKey key;
-        for (std::size_t i = 0; i < face.corners; ++i) key.add_mixed(mixed[face.corner[i]]);
-        asides.add_face_key(key.key());
+        for (std::size_t i = 0; i < t.face[f].corners; ++i)
+            key.add_mixed(mixed[t.face[f].corner[i]]);
+        aside_.face_key[f] = key.key();
     }
 }
 
@@ -162,8 +175,8 @@ void AsideContour<dimension, Real>::draw(DrawnSurface<dimension>& surface,
     }
     load(surface.builder().keeps_elements(), transitions.asides, aside);
     aside.beyond ? contour_->begin_beyond(surface) : contour_->begin(surface);
-    const Names names = take_vertices(transitions, aside);
-    const unsigned joins = adopts ? adoption_.choose(aside, names) : aside.joins;
+    take_vertices(record, aside);
+    const unsigned joins = adopts ? adoption_.choose(aside) : aside.joins;
     if (!aside.beyond && !is_whole(aside.shape, aside.inside)) {
         contour_->draw(aside.inside, joins, aside.boundary);
     }
@@ -182,7 +195,7 @@ void AsideContour<dimension, Real>::draw_plainly(DrawnSurface<dimension>& surfac
         surface.builder().add_element(transitions.asides.handle(aside), aside.shape, aside.level);
     }
     const Vertices v = transitions.record.by_names()
-                           ? make_vertices(surface, transitions.asides, aside)
+                           ? make_vertices(surface, transitions.record, aside)
                            : aside.vertex;
     contour_->draw_between(surface, plain, v, aside.mirrored, aside.boundary);
     surface.builder().flush_if_full();
@@ -201,38 +214,31 @@ void AsideContour<dimension, Real>::load(bool keeps_elements, const Asides<Real>
     cuts_->reload(view_, aside.has_corners ? aside.key : nullptr, aside.x);
 }
 
-/// Makes the vertices of an element whose cuts were kept.
+/// Makes the vertices of an element whose cuts the record has.
 /// \return their numbers in the surface, by edge
 template <int dimension, class Real>
 auto AsideContour<dimension, Real>::make_vertices(DrawnSurface<dimension>& surface,
-                                                  const Asides<Real>& asides,
-                                                  const Aside& aside) const -> Vertices {
+                                                  const TransitionContours& record,
+                                                  const Aside& aside) -> Vertices {
     Vertices vertices;
     for (unsigned left = aside.edges; left != 0; left &= left - 1) {
         const std::size_t edge = lowest(left);
-        const SurfaceCut cut = asides.cut(aside.vertex[edge]);
+        const SurfaceCut cut = record.cut(aside.vertex[edge]);
         vertices[edge] = surface.vertex_between({cut.node[0], cut.node[1]}, [&] { return cut; });
     }
     return vertices;
 }
 
 /// Gives the contour the vertices of an element that was put aside.
-/// \return by edge, the nodes around each, where the record knows vertices by these
 template <int dimension, class Real>
-auto AsideContour<dimension, Real>::take_vertices(const Transitions<Real>& transitions,
-                                                  const Aside& aside) -> Names {
-    Names names;
+void AsideContour<dimension, Real>::take_vertices(const TransitionContours& record,
+                                                  const Aside& aside) {
     for (unsigned left = aside.edges; left != 0; left &= left - 1) {
         const auto edge = lowest<std::uint8_t>(left);
-        if (!transitions.record.by_names()) {
-            contour_->take_vertex(edge, aside.vertex[edge], aside.has_corners);
-            continue;
-        }
-        const SurfaceCut cut = transitions.asides.cut(aside.vertex[edge]);
-        names[edge] = KeyPair(cut.node[0], cut.node[1]);
-        contour_->take_cut(edge, cut, aside.has_corners);
+        const std::uint32_t vertex = aside.vertex[edge];
+        record.by_names() ? contour_->take_cut(edge, record.cut(vertex), aside.has_corners)
+                          : contour_->take_vertex(edge, vertex, aside.has_corners);
     }
-    return names;
 }
 
 /// Draws the polygons in faces that their two sides divide in different directions.

@@ -5,12 +5,17 @@
 // known when the walk is over (docs/closed_surfaces.md).
 //
 // Most elements are kept as numbers alone: signs, the vertices on their cut edges, and the keys of
-// their cut faces, about 60 bytes. Corners are kept where a part of the drawing depends on them.
+// their cut faces, about 55 bytes. Corners are kept where a part of the drawing depends on them.
+// Elements lie behind each other in blocks of memory, without lists of their own.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,8 +26,8 @@
 
 namespace nestgrid::engine {
 
-/// An element that was put aside, without what it has lists of. Sets of corners, edges and faces
-/// have one bit each.
+/// The parts of an element that was put aside which every element has. Sets of corners, edges and
+/// faces have one bit each.
 struct AsideElement {
     std::uint16_t edges;  ///< cut edges whose vertices are kept
     std::uint16_t level;  ///< of the element in the hierarchy
@@ -37,16 +42,68 @@ struct AsideElement {
     bool has_corners : 1;  ///< keys, positions and values at the corners are kept
 };
 
+/// Blocks of memory that only grow in number. What lies there is never moved.
+class MemoryBlocks {
+public:
+    /// Memory behind all that was taken before, at an address that is a multiple of 8.
+    /// \param size in bytes
+    std::byte* room(std::size_t size) {
+        while (blocks_.empty() || blocks_[last_].size - blocks_[last_].used < size) begin(size);
+        return blocks_[last_].memory.get() + blocks_[last_].used;
+    }
+    /// Takes the beginning of what room() returned.
+    /// \param size in bytes, a multiple of 8
+    void take(std::size_t size) { blocks_[last_].used += size; }
+    /// Calls function(begin, end) for the part of each block that is used.
+    template <class Function>
+    void for_each(Function&& function) const {
+        for (const Block& block : blocks_) {
+            const std::byte* const begin = block.memory.get();
+            function(begin, begin + block.used);
+        }
+    }
+    /// Takes all back, and keeps the memory.
+    void clear() {
+        for (Block& block : blocks_) block.used = 0;
+        last_ = 0;
+    }
+    std::size_t memory_bytes() const { return bytes_; }
+
+private:
+    struct Block {
+        std::unique_ptr<std::byte[]> memory;  // NOLINT(modernize-avoid-c-arrays): not set to zeros
+        std::size_t size;
+        std::size_t used;
+    };
+
+    /// Goes on in the next block, and makes it where there is none. A block has an eighth of the
+    /// memory so far, so that little remains empty.
+    void begin(std::size_t size) {
+        if (last_ + 1 < blocks_.size()) {
+            ++last_;
+            return;
+        }
+        const std::size_t bytes = std::max({size, bytes_ / 8, std::size_t{4096}});
+        blocks_.push_back({std::unique_ptr<std::byte[]>(new std::byte[bytes]), bytes, 0});
+        bytes_ += bytes;
+        last_ = blocks_.size() - 1;
+    }
+
+    std::vector<Block> blocks_;
+    std::size_t last_ = 0;  // the block that is filled
+    std::size_t bytes_ = 0;
+};
+
 /// A list of elements in the order in which a walk met them.
 template <class Real>
 class Asides {
 public:
     using Number = std::uint32_t;
 
-    /// An element of the list; pointers are valid until the list changes.
+    /// An element of the list. Its pointers are null where nothing is kept there.
     struct Aside : AsideElement {
-        std::size_t index;                        ///< in the list
-        std::array<Number, max_edges> vertex;     ///< by edge: its number, or that of a kept cut
+        std::size_t index;                        ///< in the list; add() does not read it
+        std::array<Number, max_edges> vertex;     ///< by edge: its number in the surface or record
         std::array<NodeKey, max_faces> face_key;  ///< by face
         const NodeKey* key;                       ///< of the corners
         const Point* x;                           ///< their positions
@@ -56,140 +113,122 @@ public:
 
     /// To be called once.
     /// \param elements an empty list for elements of the grid
-    void begin(std::size_t components, std::size_t attribute_count, Elements elements) {
+    void begin(std::size_t components, Elements elements) {
         components_ = components;
-        attribute_count_ = attribute_count;
         elements_ = std::move(elements);
     }
 
-    /// Begins an element. What is kept of it is to be added next, in the order of its edges, faces
-    /// and corners.
-    void add(const AsideElement& element) { all_.push_back(element); }
-    void add_vertex(Number number) { vertices_.push_back(number); }
-    void add_cut(const SurfaceCut& cut) {
-        vertices_.push_back(static_cast<Number>(cuts_.size()));
-        cuts_.push_back({cut.x, cut.node, cut.fraction});
-        attributes_.insert(attributes_.end(), cut.attributes.begin(), cut.attributes.end());
+    /// Adds an element.
+    void add(const Aside& aside) {
+        const Topology& t = topology(aside.shape);
+        const std::size_t corners = aside.has_corners ? t.corners : 0U;
+        const std::size_t edges = aside.capped != 0 ? t.edges : 0U;
+        const std::size_t values = corners * components_;
+        std::byte* const begin = blocks_.room(most_bytes + values * sizeof(Real) + 2 * alignment);
+        std::byte* at = begin;
+        const AsideElement& element = aside;
+        put(at, &element, 1);
+        for_each_bit(aside.edges, [&](std::size_t e) { put(at, &aside.vertex[e], 1); });
+        at = begin + aligned(at - begin);
+        for_each_bit(aside.faces, [&](std::size_t f) { put(at, &aside.face_key[f], 1); });
+        put(at, aside.key, corners);
+        put(at, aside.x, corners);
+        put(at, aside.edge_key, edges);
+        put(at, aside.value, values);
+        blocks_.take(aligned(at - begin));
+        ++size_;
     }
-    /// Adds the name of a cut alone, where simplices are only counted.
-    void add_name(const KeyPair& name) {
-        vertices_.push_back(static_cast<Number>(cuts_.size()));
-        cuts_.push_back({{}, {name.low, name.high}, 0});
-        attributes_.resize(attributes_.size() + attribute_count_);
-    }
-    void add_face_key(NodeKey key) { face_keys_.push_back(key); }
-    void add_corners(std::span<const NodeKey> keys, const Point* x, const Real* values) {
-        keys_.insert(keys_.end(), keys.begin(), keys.end());
-        x_.insert(x_.end(), x, x + keys.size());
-        values_.insert(values_.end(), values, values + keys.size() * components_);
-    }
-    void add_edge_keys(std::span<const NodeKey> keys) {
-        edge_keys_.insert(edge_keys_.end(), keys.begin(), keys.end());
-    }
+    /// Adds a handle of the element that was added last.
     void add_handle(const Handle& element) { elements_.append(element); }
 
     /// Adds the list of another task.
-    /// \param numbers those that the vertices of the other task's surface have in this one's; empty
-    ///        where cuts are kept
+    /// \param numbers those that the vertices of the other task have in this one
     void append(const Asides& other, std::span<const Number> numbers) {
-        const auto append_to = [](auto& to, const auto& from) {
-            to.insert(to.end(), from.begin(), from.end());
-        };
-        const auto cuts = static_cast<Number>(cuts_.size());
-        for (const Number v : other.vertices_) {
-            vertices_.push_back(numbers.empty() ? cuts + v : numbers[v]);
-        }
-        append_to(all_, other.all_);
-        append_to(cuts_, other.cuts_);
-        append_to(attributes_, other.attributes_);
-        append_to(face_keys_, other.face_keys_);
-        append_to(keys_, other.keys_);
-        append_to(x_, other.x_);
-        append_to(values_, other.values_);
-        append_to(edge_keys_, other.edge_keys_);
+        other.for_each([&](const Aside& from) {
+            Aside aside = from;
+            for_each_bit(aside.edges,
+                         [&](std::size_t e) { aside.vertex[e] = numbers[from.vertex[e]]; });
+            add(aside);
+        });
         elements_.append(other.elements_);
     }
 
-    bool empty() const { return all_.empty(); }
+    bool empty() const { return size_ == 0; }
 
     /// Calls function(aside) for each element.
     template <class Function>
     void for_each(Function&& function) const {
         Aside aside{};
-        const Number* vertex = vertices_.data();
-        const NodeKey* face_key = face_keys_.data();
-        aside.key = keys_.data();
-        aside.x = x_.data();
-        aside.value = values_.data();
-        aside.edge_key = edge_keys_.data();
-        for (const AsideElement& element : all_) {
-            static_cast<AsideElement&>(aside) = element;
-            for (unsigned left = element.edges; left != 0; left &= left - 1) {
-                aside.vertex[static_cast<std::size_t>(std::countr_zero(left))] = *vertex++;
+        blocks_.for_each([&](const std::byte* begin, const std::byte* end) {
+            while (begin != end) {
+                begin += read(begin, aside);
+                function(std::as_const(aside));
+                ++aside.index;
             }
-            for (unsigned left = element.faces; left != 0; left &= left - 1) {
-                aside.face_key[static_cast<std::size_t>(std::countr_zero(left))] = *face_key++;
-            }
-            function(std::as_const(aside));
-            const Topology& t = topology(element.shape);
-            if (element.has_corners) {
-                aside.key += t.corners;
-                aside.x += t.corners;
-                aside.value += t.corners * components_;
-            }
-            if (element.capped != 0) aside.edge_key += t.edges;
-            ++aside.index;
-        }
-    }
-    /// A cut that was kept.
-    SurfaceCut cut(Number number) const {
-        const Cut& cut = cuts_[number];
-        return {cut.x, cut.node, cut.fraction,
-                std::span(attributes_).subspan(number * attribute_count_, attribute_count_)};
+        });
     }
     /// A handle of the element, valid until the list changes. Requires that handles were added.
     Handle handle(const Aside& aside) const { return elements_.handle(aside.index); }
 
     void clear() {
-        all_.clear();
-        vertices_.clear();
-        cuts_.clear();
-        attributes_.clear();
-        face_keys_.clear();
-        keys_.clear();
-        x_.clear();
-        values_.clear();
-        edge_keys_.clear();
+        blocks_.clear();
+        size_ = 0;
         elements_.clear();
     }
-    std::size_t memory_bytes() const {
-        return bytes(all_) + bytes(vertices_) + bytes(cuts_) + bytes(attributes_) +
-               bytes(face_keys_) + bytes(keys_) + bytes(x_) + bytes(values_) + bytes(edge_keys_) +
-               elements_.memory_bytes();
-    }
+    std::size_t memory_bytes() const { return blocks_.memory_bytes() + elements_.memory_bytes(); }
 
 private:
-    struct Cut {
-        Point x;
-        std::array<NodeKey, 2> node;
-        double fraction;
-    };
+    // An element lies in memory as add() puts it: the numbers of its vertices behind its
+    // AsideElement; then its face keys, the keys and positions of its corners, its edge keys and
+    // its values.
+    static constexpr std::size_t alignment = 8;
+    static constexpr std::size_t most_bytes =
+        sizeof(AsideElement) + max_edges * sizeof(Number) +
+        (max_faces + max_corners + max_edges) * sizeof(NodeKey) + max_corners * sizeof(Point);
+
+    static std::size_t aligned(std::ptrdiff_t bytes) {
+        return (static_cast<std::size_t>(bytes) + alignment - 1) & ~(alignment - 1);
+    }
+    template <class Function>
+    static void for_each_bit(unsigned bits, Function&& function) {
+        for (; bits != 0; bits &= bits - 1) {
+            function(static_cast<std::size_t>(std::countr_zero(bits)));
+        }
+    }
     template <class T>
-    static std::size_t bytes(const std::vector<T>& list) {
-        return list.capacity() * sizeof(T);
+    static void put(std::byte*& at, const T* from, std::size_t count) {
+        if (count > 0) std::memcpy(at, from, count * sizeof(T));
+        at += count * sizeof(T);
+    }
+    template <class T>
+    static const T* array_at(const std::byte*& at, std::size_t count) {
+        const auto* const array = reinterpret_cast<const T*>(at);
+        at += count * sizeof(T);
+        return count == 0 ? nullptr : array;
+    }
+
+    /// Reads the element that begins at an address.
+    /// \return its size in bytes
+    std::size_t read(const std::byte* begin, Aside& aside) const {
+        const std::byte* at = begin;
+        static_cast<AsideElement&>(aside) = *array_at<AsideElement>(at, 1);
+        for_each_bit(aside.edges,
+                     [&](std::size_t e) { aside.vertex[e] = *array_at<Number>(at, 1); });
+        at = begin + aligned(at - begin);
+        for_each_bit(aside.faces,
+                     [&](std::size_t f) { aside.face_key[f] = *array_at<NodeKey>(at, 1); });
+        const Topology& t = topology(aside.shape);
+        const std::size_t corners = aside.has_corners ? t.corners : 0U;
+        aside.key = array_at<NodeKey>(at, corners);
+        aside.x = array_at<Point>(at, corners);
+        aside.edge_key = array_at<NodeKey>(at, aside.capped != 0 ? t.edges : 0U);
+        aside.value = array_at<Real>(at, corners * components_);
+        return aligned(at - begin);
     }
 
     std::size_t components_ = 1;
-    std::size_t attribute_count_ = 0;
-    std::vector<AsideElement> all_;
-    std::vector<Number> vertices_;
-    std::vector<Cut> cuts_;
-    std::vector<double> attributes_;  // of the cuts
-    std::vector<NodeKey> face_keys_;
-    std::vector<NodeKey> keys_;
-    std::vector<Point> x_;
-    std::vector<Real> values_;
-    std::vector<NodeKey> edge_keys_;
+    MemoryBlocks blocks_;
+    std::size_t size_ = 0;
     Elements elements_;  // where the surface keeps elements
 };
 

@@ -57,8 +57,7 @@ LevelSet<dimension, Real>::LevelSet(const Walk<Real>& walk, const LevelSearch<Re
     for (Transitions<Real>& t : transitions_) {
         t.record.begin(at_hand_.cuts.attribute_count(), walk.hierarchy().make_elements());
         t.record.share(walk.hierarchy().facts().shared);
-        t.asides.begin(walk.components(), at_hand_.cuts.attribute_count(),
-                       walk.hierarchy().make_elements());
+        t.asides.begin(walk.components(), walk.hierarchy().make_elements());
     }
     begin(search, builders);
 }
@@ -261,8 +260,7 @@ void LevelSet<dimension, Real>::add_part(std::size_t level, const LevelSet& draw
     if (records_) {
         Transitions<Real>& to = transitions_[level];
         const Transitions<Real>& from = drawn.transitions_[level];
-        if (to.record.by_names()) numbers.clear();
-        to.record.append(from.record, numbers);
+        numbers = to.record.append(from.record, std::move(numbers));
         to.asides.append(from.asides, numbers);
     }
     if (!surface.counts_only()) surface.builder().flush_if_full();
@@ -379,7 +377,7 @@ void LevelSet<dimension, Real>::extract(const View& view) {
     const bool shown = view.member->hidden != Hidden::wholly;
     const unsigned boundary = options_->cap ? capped_faces(view) : 0U;
     const bool draws = shown || boundary != 0;
-    if (!draws && (options_->cap || !view.closed.any)) return;
+    if (!draws && (options_->cap || !view.closed.any_face)) return;
     const std::size_t corners = view.corner_count();
     at_hand_.loaded = false;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
@@ -417,7 +415,9 @@ NESTGRID_INLINE void LevelSet<dimension, Real>::extract(std::size_t level, const
                                                         bool draws) {
     load(view, draws);
     at_hand_.cuts.set_level(search_->levels()[level]);
-    if (!records_ || (draws && view.level == finest_level_ && !view.closed.any)) {
+    // What is recorded lies on closed faces; what caps record, also on closed edges.
+    const bool may_record = boundary == 0 ? view.closed.any_face : view.closed.any;
+    if (!records_ || (draws && view.level == finest_level_ && !may_record)) {
         return draw(level, inside, boundary);
     }
     draw_beside_finer(level, inside, boundary, draws);
@@ -488,20 +488,19 @@ void LevelSet<dimension, Real>::draw_beside_finer(std::size_t level, unsigned in
     Transitions<Real>& transitions = transitions_[level];
     auto& aside = at_hand_.aside;
     const bool by_names = transitions.record.by_names();
-    const Contour* const plain = plain_contour(view.shape, inside);
     const bool at_once = view.level == finest_level_;
-    typename ElementContour<dimension, Real>::Vertices vertices;
+    const Contour* const plain = plain_contour(view.shape, inside);
+    aside.begin(inside, boundary, draws && !at_once);
     if (at_once && draws && plain != nullptr && !by_names) {
-        at_hand_.contour.draw_plainly(surface, *plain, inside, &vertices);
-        aside.record(transitions.record, inside, boundary, vertices);
+        at_hand_.contour.draw_plainly(surface, *plain, inside, &aside.vertices());
+        aside.record(transitions.record);
         return end_element(surface);
     }
-    if (!by_names) vertices = aside.find_vertices(surface, plain, inside);
-    if (view.closed.any) aside.record(transitions.record, inside, boundary, vertices);
+    by_names ? aside.find_vertices(transitions.record) : aside.find_vertices(surface, plain);
+    aside.record(transitions.record);
     if (!draws) return;
     if (at_once) return draw(level, inside, boundary);
-    const unsigned on_boundary = boundary_of(surface, view);
-    aside.put_aside(surface, transitions, inside, boundary, on_boundary, vertices);
+    aside.put_aside(surface, transitions, boundary_of(surface, view));
     if (view.member->hidden != Hidden::wholly) end_element(surface);
 }
 

@@ -14,69 +14,24 @@ bool is_cut(unsigned signs, std::size_t side, std::size_t corners) {
     return (signs >> side & 1U) != (signs >> ((side + 1) % corners) & 1U);
 }
 
-/// The segments that an element draws on its closed faces, each from one of its edges to another.
-class FaceSegments {
-public:
-    struct Segment {
-        const ClosedFace* around;
-        std::array<std::uint8_t, 2> edge;
-    };
-
-    template <class Real>
-    FaceSegments(const ElementCuts<Real>& element, unsigned cut_faces, unsigned inside) {
-        const ElementView<Real>& view = element.view();
-        for (unsigned left = cut_faces; left != 0; left &= left - 1) {
-            const auto f = static_cast<std::size_t>(std::countr_zero(left));
-            const ClosedFace* around = view.closed.face(f);
-            if (around == nullptr) continue;
-            const FaceTopology& face = view.topology().face[f];
-            const FaceContour& contour = element.contour(face, signs_of(face, inside));
-            for (std::size_t i = 0; i < contour.count; ++i) {
-                std::array<std::uint8_t, 2> edge{
-                    edge_at(view.shape, face, contour.segment[i].falls),
-                    edge_at(view.shape, face, contour.segment[i].rises)};
-                // A mirrored element sees the segments on its faces the other way round.
-                if (view.orientation < 0) std::swap(edge[0], edge[1]);
-                edges_ |= 1U << edge[0] | 1U << edge[1];
-                segment_[count_++] = {around, edge};
-            }
-        }
-    }
-
-    std::span<const Segment> all() const { return {segment_.data(), count_}; }
-    unsigned edges() const { return edges_; }  ///< edges on which segments end, one bit each
-
-private:
-    std::array<Segment, 2 * max_faces> segment_;
-    std::size_t count_ = 0;
-    unsigned edges_ = 0;
-};
-
 }  // namespace
 
 template <class Real>
-void record_transitions(const ElementCuts<Real>& element, unsigned cut_faces, unsigned inside,
+void record_transitions(const ElementCuts<Real>& element, unsigned closed_faces, unsigned inside,
                         std::span<const std::uint32_t, max_edges> vertices,
                         TransitionContours& record) {
-    const FaceSegments segments(element, cut_faces, inside);
     const ElementView<Real>& view = element.view();
-    std::array<TransitionContours::Index, max_edges> named;
-    if (record.by_names()) {
-        std::array<KeyPair, max_edges> names;  // fetched at once, so that none waits for another
-        for (unsigned left = segments.edges(); left != 0; left &= left - 1) {
-            const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
-            names[e] = element.name(e);
-            record.expect(names[e]);
+    for (unsigned left = closed_faces; left != 0; left &= left - 1) {
+        const auto f = static_cast<std::size_t>(std::countr_zero(left));
+        const FaceTopology& face = view.topology().face[f];
+        const FaceContour& contour = element.contour(face, signs_of(face, inside));
+        for (std::size_t i = 0; i < contour.count; ++i) {
+            std::uint32_t from = vertices[edge_at(view.shape, face, contour.segment[i].falls)];
+            std::uint32_t to = vertices[edge_at(view.shape, face, contour.segment[i].rises)];
+            // A mirrored element sees the segments on its faces the other way round.
+            if (view.orientation < 0) std::swap(from, to);
+            record.record(view.closed.face(f), from, to, view.element(), view.shape, view.level);
         }
-        for (unsigned left = segments.edges(); left != 0; left &= left - 1) {
-            const auto e = static_cast<std::uint8_t>(std::countr_zero(left));
-            named[e] = record.vertex(names[e], [&] { return element.cut(e); });
-        }
-        vertices = named;
-    }
-    for (const FaceSegments::Segment& segment : segments.all()) {
-        record.record(segment.around, vertices[segment.edge[0]], vertices[segment.edge[1]],
-                      view.element(), view.shape, view.level);
     }
 }
 
@@ -105,23 +60,19 @@ auto TransitionAdoption<dimension, Real>::adopt(const Aside& aside, std::size_t 
                                                 std::size_t side, unsigned signs) -> Found {
     const FaceTopology& face = topology(aside.shape).face[on];
     const std::size_t n = face.corners;
-    const Number* from = recorded_[edge_at(aside.shape, face, side)];
-    if (from == nullptr) return Found::nothing;
     constexpr Number none = DrawnSurface<dimension>::none;
     std::array<Number, 2> ends{none, none};
     std::array<std::size_t, 2> sides{};
     std::size_t count = 0;
     for (std::size_t i = 0; i < n; ++i) {
         if (!is_cut(signs, i, n) || (signs >> i & 1U) == (signs >> side & 1U)) continue;
-        const Number* end = recorded_[edge_at(aside.shape, face, i)];
-        if (end == nullptr) return Found::nothing;
         sides[count] = i;
-        ends[count++] = *end;
+        ends[count++] = aside.vertex[edge_at(aside.shape, face, i)];
     }
     between_.clear();
     std::size_t end = 0;
     const bool found = record_->follow(
-        on_face_[on], *from,
+        on_face_[on], aside.vertex[edge_at(aside.shape, face, side)],
         [&](Number v) {
             if (v != ends[0] && v != ends[1]) return false;
             end = sides[v == ends[0] ? 0 : 1];
@@ -141,12 +92,7 @@ auto TransitionAdoption<dimension, Real>::adopt(const Aside& aside, std::size_t 
 }
 
 template <int dimension, class Real>
-unsigned TransitionAdoption<dimension, Real>::choose(const Aside& aside,
-                                                     std::span<const KeyPair, max_edges> names) {
-    for (unsigned left = aside.edges; left != 0; left &= left - 1) {
-        const auto e = static_cast<std::size_t>(std::countr_zero(left));
-        recorded_[e] = record_->by_names() ? record_->find(names[e]) : &aside.vertex[e];
-    }
+unsigned TransitionAdoption<dimension, Real>::choose(const Aside& aside) {
     unsigned joins = aside.joins;
     for (unsigned left = faces_; left != 0; left &= left - 1) {
         const auto f = static_cast<std::size_t>(std::countr_zero(left));

@@ -11,11 +11,11 @@
 namespace nestgrid::engine {
 
 /// Records the segments that an element draws on its closed faces.
-/// \param cut_faces its faces that the level cuts, one bit each
+/// \param closed_faces those of its faces that the level cuts, one bit each
 /// \param inside its corners inside the level, one bit each
-/// \param vertices by edge, the numbers in the surface, where the record knows vertices by these
+/// \param vertices by edge, the numbers by which the record knows them
 template <class Real>
-void record_transitions(const ElementCuts<Real>& element, unsigned cut_faces, unsigned inside,
+void record_transitions(const ElementCuts<Real>& element, unsigned closed_faces, unsigned inside,
                         std::span<const std::uint32_t, max_edges> vertices,
                         TransitionContours& record);
 
@@ -34,11 +34,9 @@ public:
     bool find(const TransitionContours& record, const Aside& aside);
     /// Gives the contour the chains that finer sides drew on the faces that find() found. Requires
     /// that contour.begin() was called.
-    /// \param names the nodes around the vertex on each cut edge, where the record knows vertices
-    ///        by these
     /// \return faces that join their corners inside the level, one bit each: as the finer side
     ///         does, else by the face's values
-    unsigned choose(const Aside& aside, std::span<const KeyPair, max_edges> names);
+    unsigned choose(const Aside& aside);
 
 private:
     using Number = std::uint32_t;
@@ -50,9 +48,7 @@ private:
     const TransitionContours* record_ = nullptr;
     unsigned faces_ = 0;                       // faces that find() found, one bit each
     std::array<Number, max_faces> on_face_{};  // number of the record on each of them
-    /// By edge, the number of the vertex in the record, or null where nothing was recorded there.
-    std::array<const Number*, max_edges> recorded_{};
-    std::vector<Number> between_;  // vertices of the chain adopted last
+    std::vector<Number> between_;              // vertices of the chain adopted last
 };
 
 }  // namespace nestgrid::engine
