@@ -67,7 +67,6 @@ void require_drawn_on_ranks(const Hierarchy<Real>& grid) {
         Refused{grid.offers(Feature::hidden), "a grid with hidden elements"},
         Refused{grid.offers(Feature::masked), "a grid with masked elements"},
         Refused{grid.offers(Feature::outside), "a grid that ends outside its coarse elements"},
-        Refused{grid.offers(Feature::new_positions), "a grid with curved elements"},
         Refused{grid.offers(Feature::hanging_parents), "a grid with nodes that hang across"},
     };
     refuse_first(refused);
