@@ -39,9 +39,10 @@ constexpr std::uint64_t most_beyond = 16;
 /// Tries thresholds by their codes, and keeps the last one that fits.
 class Trials {
 public:
-    Trials(const CountTriangles& count, std::uint64_t max_triangles)
-        : count_{count}, max_triangles_{max_triangles} {
+    Trials(const CountTriangles& count, std::uint64_t max_triangles, std::uint16_t least)
+        : count_{count}, max_triangles_{max_triangles}, least_{least} {
         best_.max_triangles = max_triangles;
+        best_.least = bfloat16_value(least);
     }
 
     const TriangleBudget& best() const { return best_; }
@@ -60,16 +61,18 @@ public:
         return triangles.has_value();
     }
 
-    /// Requires: `within` fits, and 0 does not.
+    /// Requires: `within` fits, and 0 does not. A least threshold above 0 is tried last: a drawing
+    /// at it may be far larger than the budget.
     Bracket bracket_below(std::uint16_t within) {
         int step = octave;
-        for (int trial = 0; within > step; ++trial) {
+        for (int trial = 0; within > least_ + step; ++trial) {
             const auto code = static_cast<std::uint16_t>(within - step);
             if (!fits(code)) return {code, within};
             within = code;
-            if (trial >= halvings) step *= 2;
+            if (trial >= halvings && least_ == 0) step *= 2;
         }
-        return {0, within};
+        if (least_ > 0 && (within == least_ || fits(least_))) return {least_, least_};
+        return {least_, within};
     }
 
     /// Requires: `beyond` does not fit. Tries the greatest threshold first, because where that does
@@ -103,26 +106,30 @@ private:
 
     const CountTriangles& count_;
     std::uint64_t max_triangles_;
+    std::uint16_t least_;
     TriangleBudget best_;
     bool any_fits_ = false;
 };
 
-void search(Trials& trials, double start) {
-    if (trials.fits(0)) return;
-    const std::uint16_t first =
-        std::min(bfloat16_above(float_above(std::max(start, 0.0))), greatest_code);
+std::uint16_t code_above(double threshold) {
+    return std::min(bfloat16_above(float_above(std::max(threshold, 0.0))), greatest_code);
+}
+
+void search(Trials& trials, double start, std::uint16_t least) {
+    if (least == 0 && trials.fits(0)) return;
+    const std::uint16_t first = std::max(code_above(start), least);
     const Bracket bracket =
         first > 0 && trials.fits(first) ? trials.bracket_below(first) : trials.bracket_above(first);
-    const std::uint16_t least = engine::least_that_fits(
+    const std::uint16_t found = engine::least_that_fits(
         bracket.beyond, bracket.within, [&](std::uint16_t code) { return trials.fits(code); });
-    trials.look_beyond(static_cast<std::uint16_t>(least - 1));
+    trials.look_beyond(static_cast<std::uint16_t>(found - 1));
 }
 
 }  // namespace
 
 BudgetEnd TriangleBudget::end() const {
     if (cancelled) return BudgetEnd::cancelled;
-    if (threshold == 0) return BudgetEnd::complete;
+    if (threshold <= least) return BudgetEnd::complete;
     const bool filled = triangles >= max_triangles - max_triangles / 10;
     return filled ? BudgetEnd::filled : BudgetEnd::step;
 }
@@ -134,9 +141,13 @@ std::string TriangleBudget::reason() const {
         case BudgetEnd::filled:
             return {};
         case BudgetEnd::complete:
-            return of + ": nothing is left out";
+            return least == 0 ? of + ": nothing is left out"
+                              : of + ": no error below " + short_number(least) + " is tried";
         case BudgetEnd::step:
-            return of + ": many elements share one indicator, and the next lesser threshold, " +
+            return of +
+                   (least == 0
+                        ? ": many elements share one indicator, and the next lesser threshold, "
+                        : ": many elements are halved at one error, and the next lesser one, ") +
                    short_number(next_threshold) + ", has " +
                    (next_triangles == 0 ? "more than " + std::to_string(most_beyond * max_triangles)
                                         : std::to_string(next_triangles));
@@ -147,10 +158,11 @@ std::string TriangleBudget::reason() const {
 }
 
 TriangleBudget least_threshold(const CountTriangles& count, double start,
-                               std::uint64_t max_triangles) {
-    Trials trials(count, max_triangles);
+                               std::uint64_t max_triangles, double least) {
+    const std::uint16_t least_code = code_above(least);
+    Trials trials(count, max_triangles, least_code);
     try {
-        search(trials, start);
+        search(trials, start, least_code);
         return trials.best();
     } catch (const engine::Cancelled&) {
         TriangleBudget best = trials.best();

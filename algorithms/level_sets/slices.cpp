@@ -55,18 +55,12 @@ std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
     const auto count = [&](const auto& levels) {
         return count_simplices<3>(levels, criterion, bounds, most, options, executor);
     };
-    try {
-        if (!request.functions.empty()) {
-            return with_levels(hierarchy, request, options, count);
-        }
-        Levels<Real> levels{&hierarchy, {}};
-        together(hierarchy.facts().shared, "a number of triangles", [&] {
-            levels = isosurface_levels(hierarchy, std::span<const double>(request.isovalues));
-        });
-        return count(levels);
-    } catch (const Cancelled&) {
-        return std::nullopt;
-    }
+    if (!request.functions.empty()) return with_levels(hierarchy, request, options, count);
+    Levels<Real> levels{&hierarchy, {}};
+    together(hierarchy.facts().shared, "a number of triangles", [&] {
+        levels = isosurface_levels(hierarchy, std::span<const double>(request.isovalues));
+    });
+    return count(levels);
 }
 
 #define NESTGRID_INSTANTIATE(Real)                                                               \

@@ -66,14 +66,17 @@ template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const IsosurfaceOptions& options, const Executor& executor);
 
-/// Those of slices and isosurfaces, before vertices are merged at nodes.
+/// The number of triangles of slices and isosurfaces, before vertices are merged at nodes, or
+/// nothing where there are more than `most`.
+///
+/// \throw Cancelled where options.progress ends it
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const SliceRequest& request,
                                              const Criterion& criterion, const Bounds& bounds,
                                              std::uint64_t most, const IsosurfaceOptions& options,
                                              const Executor& executor);
-/// Those of a shading.
+/// The same for a shading.
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Criterion& criterion, const Bounds& bounds,

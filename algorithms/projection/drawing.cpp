@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/drawing.hpp>
 
-#include <limits>
-
 #include <level_sets/draw.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
@@ -133,9 +131,7 @@ void check_isosurface(const Projection& projection, const IsosurfaceOptions& opt
 }  // namespace
 
 double default_error(const HighOrder& data) {
-    // Bounds are the same at any tolerance.
-    const VirtualRefinement coarsest(data, {.tolerance = std::numeric_limits<double>::max()});
-    const double range = coarsest.bounds().greatest() - coarsest.bounds().least();
+    const double range = engine::range_of(data);
     return range > 0 ? 1e-3 * range : 1;
 }
 
@@ -146,6 +142,8 @@ Projection with_error(const Prerolls& prerolls, Projection projection, const Wor
     if (projection.draws_everything()) {
         projection.indicator = "error";
         projection.threshold = default_error(*data);
+    } else if (projection.indicator == "offset" && !projection.threshold) {
+        projection.indicator = "error";  // within a number of triangles, or by a lens alone
     }
     projection.require_error_alone(data->greatest_degree());
     return projection;
@@ -161,8 +159,13 @@ Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double iso
         return engine::isosurface<dimension>(fine, isovalue, fine.criterion(), fine.bounds(),
                                              options, work.executor);
     };
+    const auto count = [&](const VirtualRefinement& fine, std::uint64_t most) {
+        const auto levels = engine::isosurface_levels<double>(fine, std::span(&isovalue, 1));
+        return engine::count_simplices<dimension>(levels, fine.criterion(), fine.bounds(), most,
+                                                  options, work.executor);
+    };
     if (auto drawn = engine::within_error<Isosurface<dimension>>(prerolls, projection, work,
-                                                                 dimension, within)) {
+                                                                 dimension, within, count)) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
@@ -229,7 +232,13 @@ Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double
     const auto within = [&](const VirtualRefinement& fine) {
         return draw(fine, fine.criterion(), fine.bounds());
     };
-    if (auto drawn = engine::within_error<Result>(prerolls, projection, work, dimension, within)) {
+    const auto count = [&](const VirtualRefinement& fine, std::uint64_t most) {
+        const auto levels = engine::isosurface_levels<double>(fine, isovalues);
+        return engine::count_simplices<dimension>(levels, fine.criterion(), fine.bounds(), most,
+                                                  options, work.executor);
+    };
+    if (auto drawn =
+            engine::within_error<Result>(prerolls, projection, work, dimension, within, count)) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {

@@ -160,10 +160,15 @@ void say_what_is_promised(const Drawn& d, Report& report) {
 /// How a field of higher degree was drawn.
 void say_how_finely(const Drawn& d, Report& report) {
     std::array<char, 160> text{};
-    std::snprintf(
-        text.data(), text.size(), "drawn within %.4g of polynomials of degree %d%s", d.threshold,
-        d.degree,
-        d.by_default ? ", about a thousandth of their range: --error chooses another" : "");
+    if (std::isinf(d.threshold)) {
+        std::snprintf(text.data(), text.size(),
+                      "polynomials of degree %d, drawn as finely as the lens asks", d.degree);
+    } else {
+        std::snprintf(
+            text.data(), text.size(), "drawn within %.4g of polynomials of degree %d%s",
+            d.threshold, d.degree,
+            d.by_default ? ", about a thousandth of their range: --error chooses another" : "");
+    }
     report.say(text.data());
     if (d.result.counts.limited == 0) return;
     report.say(grouped(d.result.counts.limited) +
