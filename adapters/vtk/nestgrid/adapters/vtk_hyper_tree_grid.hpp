@@ -1,12 +1,17 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// VTK's hyper tree grids, in place: forests of bisected quadrilaterals or hexahedra on a
-// rectilinear coarse grid, with data of cells.
+// VTK's hyper tree grids, in place: forests of quadrilaterals or hexahedra on a rectilinear coarse
+// grid, which are divided into two or three in each direction, with data of cells.
 //
 // A node is named by its place on the lattice of the deepest level, so that trees agree about
 // it. Masked cells and ghost cells are hidden. Data of cells get to the nodes by CellAverages
-// (cell_data.hpp).
+// (cell_data.hpp). Ghost cells are those that another process draws, and their data count for the
+// nodes between the two: make the averages on a grid that shows them,
+//
+//     const HyperTreeGrid<3> all(*trees, GhostCells::shown);
+//     const CellAverages density(all, [&](const auto& e) { return values[all.index(e)]; });
+//     isosurface(HyperTreeGrid<3>(*trees), density, 0.5);
 #pragma once
 
 #include <initializer_list>
@@ -15,6 +20,7 @@
 
 #include <vtkBitArray.h>
 #include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkHyperTree.h>
 #include <vtkHyperTreeGrid.h>
 #include <vtkUnsignedCharArray.h>
@@ -25,16 +31,30 @@
 
 namespace nestgrid {
 
-/// A hyper tree grid of dimension 2 or 3. It must outlive this object, which must be made anew when
-/// the grid has changed: when trees were refined, when it has another mask, other ghost cells or
-/// coordinates, or when one of these was told to be Modified().
-template <int dim>
+/// Whether cells are drawn that another process has, too.
+enum class GhostCells : std::uint8_t { hidden, shown };
+
+namespace detail {
+
+/// A quadrilateral or hexahedron divided into `factor` in each direction, children x fastest.
+template <int dim, int factor>
+const Rule& rule_of_trees();
+
+}  // namespace detail
+
+/// A hyper tree grid of dimension 2 or 3 and of branch factor 2 or 3. It must outlive this object,
+/// which must be made anew when the grid has changed: when trees were refined, when it has another
+/// mask, other ghost cells or coordinates, or when one of these was told to be Modified().
+template <int dim, int factor = 2>
 class HyperTreeGrid {
+    static_assert((dim == 2 || dim == 3) && (factor == 2 || factor == 3));
+    static constexpr int power(int base) { return dim == 2 ? base * base : base * base * base; }
+
 public:
     static constexpr int dimension = dim;
     static constexpr int max_corners = 1 << dim;
-    static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
-    static constexpr int max_children = 1 << dim;
+    static constexpr int max_children = power(factor);
+    static constexpr int max_new_nodes = power(factor + 1) - max_corners;
     static constexpr Shape only_shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
     using Place = std::array<std::uint32_t, 3>;
     struct Element {
@@ -44,10 +64,9 @@ public:
         Place place{};  ///< of its first corner, in lattice steps of its own level
     };
 
-    /// \throw InvalidInput for a grid of another dimension, with another branch factor than two,
-    ///        with more than 2^31 steps along a side at its deepest level, or with a mask that is
-    ///        too short
-    explicit HyperTreeGrid(vtkHyperTreeGrid& grid);
+    /// \throw InvalidInput for a grid of another dimension or branch factor, with more than 2^31
+    ///        steps along a side at its deepest level, or with a mask that is too short
+    explicit HyperTreeGrid(vtkHyperTreeGrid& grid, GhostCells ghosts = GhostCells::hidden);
 
     std::size_t coarse_count() const { return trees_.size(); }
     /// \throw GridError where the grid has changed since this object was made
@@ -59,7 +78,7 @@ public:
         c.element = {trees_[i].tree, 0, 0, {at[0], at[1], at[2]}};
         c.shape = rule_->parent;
         for (std::size_t k = 0; k < max_corners; ++k) {
-            const Place corner = step(c.element.place, k);
+            const Place corner = step(c.element.place, k, 2);
             std::uint64_t id = 0;
             for (std::size_t d = 3; d-- > 0;) {
                 c.corners[k][d] = coordinates_[d][corner[d]];
@@ -76,8 +95,8 @@ public:
         const vtkIdType first = e.tree->GetElderChildIndex(static_cast<unsigned>(e.vertex));
         for (std::size_t c = 0; c < out.size(); ++c) {
             out[c] = {e.tree, first + static_cast<vtkIdType>(c), e.level + 1, e.place};
-            for (std::uint32_t& x : out[c].place) x *= 2;
-            out[c].place = step(out[c].place, c);
+            for (std::uint32_t& x : out[c].place) x *= factor;
+            out[c].place = step(out[c].place, c, factor);
         }
     }
 
@@ -93,6 +112,9 @@ public:
         }
     }
 
+    /// New nodes on a face or edge of an element that is no larger than e, is no part of the next
+    /// level, and is not hidden.
+    NodeMask constrained(const Element& e) const;
     /// What is masked.
     Hidden hidden(const Element& e) const {
         return hidden_.empty() ? Hidden::not_at_all : hidden_[static_cast<std::size_t>(index(e))];
@@ -123,23 +145,37 @@ private:
             "the hyper tree grid has changed since its adapter was made: make another one");
     }
     Hidden read_mask(const Element& e, bool masked);
+    void find_shared_nodes();
 
-    /// A step in the directions in which corner, or child, k lies from the first one.
-    Place step(Place from, std::size_t k) const {
+    /// The steps in which item k lies from the first one of a lattice of so many along each side:
+    /// corners, or children.
+    Place step(Place from, std::size_t k, std::size_t along) const {
         for (std::size_t a = 0; a < dim; ++a) {
-            from[axis_[a]] += static_cast<std::uint32_t>(k >> a & 1U);
+            from[axis_[a]] += static_cast<std::uint32_t>(k % along);
+            k /= along;
         }
         return from;
     }
     NodeKey corner_key(const Element& e, std::size_t k) const {
         NodeKey key = 0;
-        for (const std::uint32_t x : step(e.place, k))
-            key = detail::mix(key + (NodeKey{x} << (depth_ - e.level)));
+        for (const std::uint32_t x : step(e.place, k, 2))
+            key = detail::mix(key + NodeKey{x} * cells_in(depth_ - e.level));
         return key;
     }
+    /// Along a side of an element that is divided so many times.
+    static std::uint32_t cells_in(int levels) {
+        std::uint32_t cells = 1;
+        for (; levels > 0; --levels) cells *= factor;
+        return cells;
+    }
+    /// Whether a leaf that is not hidden fills the place of an element of a level.
+    bool is_undivided(const Place& place, int level) const;
 
     vtkHyperTreeGrid* grid_;
+    GhostCells ghost_cells_;
     const Rule* rule_;
+    /// New nodes of an element that are also on each neighbour of its size, by steps to it.
+    std::array<NodeMask, static_cast<std::size_t>(power(3))> shared_{};
     int depth_ = 0;
     std::array<std::size_t, 3> axis_{};  // directions in which there is more than one point
     std::array<std::vector<double>, 3> coordinates_;
