@@ -44,6 +44,11 @@ expect open_edges 0
 expect upper_isovalue 130
 run band v.vti --low 100 --high 130 --max-triangles 3000
 [ "$(value triangles)" -le 3000 ] && [ "$(value triangles)" -gt 2500 ] || fail "band: $(cat out)"
+for band in '900 901 outside' '1 9.5 outside' '1 900 holds'; do
+    set -- $band
+    run band v.vti --low $1 --high $2
+    grep -q "^the surface is empty: the band .*$3 the range 10 to 250 of the data" out || fail "band $band: $(cat out)"
+done
 refused 1 'low is not below --high' band v.vti --low 130 --high 100 -o none.vtp
 [ ! -e none.vtp ] || fail "none.vtp of a refused band"
 run slice v.vti --sphere 4.75,11.5,17,4 --cap

@@ -124,8 +124,8 @@ private:
             field_.least = least;
             field_.greatest = greatest;
         }
-        if (request_.isovalue && !request_.upper && field_.surfaces.empty()) {
-            field_.outside = outside_range(*request_.isovalue, least, greatest);
+        if (request_.isovalue && field_.surfaces.empty()) {
+            field_.outside = why_empty(request_, least, greatest);
         }
         // The range of all surfaces is known too late for a film: that of the frames takes its
         // place.
