@@ -147,7 +147,7 @@ private:
     NodeKey sizes_ = 0;                       // of all trees, mixed
     std::uint64_t epoch_ = 0;                 // when this object was made
     vtkBitArray* mask_ = nullptr;             // where there is one
-    vtkUnsignedCharArray* ghosts_ = nullptr;  // likewise
+    vtkUnsignedCharArray* ghosts_ = nullptr;  // where there are any
     std::vector<Hidden> hidden_;              // by index; empty without a mask and ghosts
 };
 
