@@ -64,14 +64,14 @@ template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const IsosurfaceOptions& options, const Executor& executor);
 
-/// Those of slices and isosurfaces, before vertices are merged at nodes.
+/// Counts triangles of slices and isosurfaces before vertices are merged at nodes.
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const SliceRequest& request,
                                              const Criterion& criterion, const Bounds& bounds,
                                              std::uint64_t most, const IsosurfaceOptions& options,
                                              const Executor& executor);
-/// Those of a shading.
+/// Counts the triangles of a shading.
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Criterion& criterion, const Bounds& bounds,

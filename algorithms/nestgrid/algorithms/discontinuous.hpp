@@ -25,7 +25,7 @@ namespace nestgrid {
 struct DiscontinuousOptions {
     /// Elements stop where component 0 deviates by this at most, in the units of the data.
     double threshold = 0;
-    /// Of the same data, borrowed; or null: then the drawing computes its own where the threshold
+    /// Deviations of these data, borrowed; or null: the drawing computes them where the threshold
     /// is not 0.
     const ElementDeviations* deviations = nullptr;
     /// Quadrilaterals in which some component differs by more than this from two triangles get a
