@@ -40,8 +40,8 @@ public:
     /// \param greatest raised to an upper bound of what they differ by in these units, if they do
     bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours,
                        double& greatest) const;
-    /// Likewise without the bound, which is faster: for triangles that replace checked ones. Those
-    /// that moved may have entered what is hidden, and are refused there.
+    /// Answers without the bound, which is faster: for triangles that replace checked ones.
+    /// Triangles that moved may have entered what is hidden, and are refused there.
     bool keeps_colours(const FlatTriangle& triangle, const CornerColours& colours) const;
 
 private:

@@ -24,15 +24,13 @@
 #include <contours/contour_table.hpp>
 #include <nestgrid/detail/pack.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// Whether the corners with U >= C are joined across a quadrilateral whose signs alternate.
 /// a, b, c, d are the values U - C around it; a function of the face alone, to the last bit.
 constexpr bool joins_across(double a, double b, double c, double d) {
     return a >= 0 ? a * c >= b * d : b * d >= a * c;
 }
-
-namespace detail {
 
 /// Whether each corner of a quadrilateral or hexahedron is the first corner plus edges at it, to
 /// the last bit, as in boxes along the axes.
@@ -105,8 +103,6 @@ inline double affine_residual_of_sheared_prism(std::span<const double, 6> u) {
     return greatest;
 }
 
-}  // namespace detail
-
 /// How far the values at the corners of an element are from an affine function: the greatest
 /// residual of a least-squares fit. Affine functions are interpolated exactly, and the shape
 /// functions are a partition of 1 and nowhere below 0, so within the element the interpolated
@@ -115,10 +111,10 @@ inline double affine_residual_of_sheared_prism(std::span<const double, 6> u) {
 template <std::size_t n>  // number of corners; the compiler unrolls the short loops
 double affine_residual(std::span<const Point, n> x, std::span<const double, n> u) {
     if constexpr (n == 4 || n == 8) {
-        if (detail::is_parallelepiped(x)) return detail::affine_residual_of_parallelepiped(u);
+        if (is_parallelepiped(x)) return affine_residual_of_parallelepiped(u);
     }
     if constexpr (n == 6) {
-        if (detail::is_sheared_prism(x)) return detail::affine_residual_of_sheared_prism(u);
+        if (is_sheared_prism(x)) return affine_residual_of_sheared_prism(u);
     }
     std::array<std::array<double, n>, 4> basis;  // 1, x, y, z at the corners
     std::array<double, n> rest;
@@ -174,4 +170,4 @@ struct Tunnel {
 /// The tunnel of a hexahedron, if it has one. u are the values U - C at its corners.
 std::optional<Tunnel> find_tunnel(const Contour& contour, const std::array<double, 8>& u);
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -15,7 +15,7 @@
 #include <contours/cell_contour.hpp>
 #include <nestgrid/detail/inlining.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// Whether the diagonal from a to c is no longer than the one from b to d.
 template <class P>
@@ -177,4 +177,4 @@ private:
     Cell* cell_;
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -13,7 +13,7 @@
 
 #include <contours/contour_table.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 namespace {
 
@@ -328,4 +328,4 @@ const ContourTable& ContourTable::of(Shape shape) {
     }
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -22,7 +22,7 @@
 
 #include <nestgrid/shape.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// One loop of a contour: cut edges in order; the segment from edge i to edge i + 1 lies in
 /// face[i]. Seen along the loop, the corners with U >= C lie behind the disc it bounds.
@@ -66,7 +66,6 @@ constexpr bool alternate(std::size_t corners, unsigned signs) {
     return corners == 4 && (signs == 5 || signs == 10);
 }
 
-namespace detail {
 constexpr FaceContour make_face_contour(std::size_t corners, unsigned signs, bool joined) {
     FaceContour contour;
     const auto positive = [&](std::size_t i) { return (signs >> (i % corners) & 1U) != 0; };
@@ -97,11 +96,9 @@ inline constexpr auto face_contours = [] {
     }
     return contours;
 }();
-}  // namespace detail
-
 /// The segments on a face of three or four corners.
 constexpr const FaceContour& face_contour(std::size_t corners, unsigned signs, bool joined) {
-    return detail::face_contours[corners][signs][joined ? 1 : 0];
+    return face_contours[corners][signs][joined ? 1 : 0];
 }
 
 /// The signs at the corners of a face, one bit each.
@@ -166,4 +163,4 @@ private:
     std::vector<Contour> contours_;
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// Cuts keep this distance from both ends of an edge, in lengths of the edge.
 inline constexpr double least_cut_fraction = 0x1p-20;
@@ -25,4 +25,4 @@ constexpr double cut_fraction(double isovalue, double low, double high) {
     return cut_fraction(isovalue, low, high, least_cut_fraction, 1 - least_cut_fraction);
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -9,7 +9,7 @@
 
 #include <contours/cell_contour.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::optional<Tunnel> find_tunnel(const Contour& contour, const std::array<doubl
     return std::nullopt;
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

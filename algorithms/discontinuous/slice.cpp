@@ -37,8 +37,8 @@ bool PieceSlice::of_interest(const View& view, const engine::Split& split) {
     const auto [least, greatest] = std::ranges::minmax(std::span(f_).first(x.size()));
     if (least <= 0 && greatest >= 0) return true;
     if (view.is_leaf() || function_->affine(0)) return false;
-    const auto within =
-        function_->range(0, x, {least, greatest}, f_[0], function_->stray(split.keys, true));
+    const auto within = function_->range(0, x, {least, greatest}, f_[0],
+                                         function_->distance_beyond_hull(split.keys, true));
     return within.least <= 0 && within.greatest >= 0;
 }
 
@@ -49,7 +49,7 @@ double PieceSlice::draw(const View& view, std::span<double> values) {
     if (!section_.draw(view, surface().builder()) || x.size() == 4) return 0;
     std::array<double, max_corners> data;
     for (std::size_t k = 0; k < x.size(); ++k) data[k] = values[k * stride + 1];
-    return 2 * affine_residual(x, std::span<const double>(data).first(x.size()));
+    return 2 * engine::affine_residual(x, std::span<const double>(data).first(x.size()));
 }
 
 DiscontinuousSurface cut(const DiscontinuousData& data, const LevelFunction& function,

@@ -130,7 +130,7 @@ public:
         };
         return for_each_in_groups(of_box, function);
     }
-    /// The same, and meets(box, level, group) is told of which group the box is: items number
+    /// for_each(), but meets(box, level, group) is told of which group the box is: items number
     /// fan * group and following on level 0, groups of the level below on the others.
     template <class Meets, class Function>
     bool for_each_in_groups(const Meets& meets, const Function& function) const {

@@ -63,7 +63,7 @@ private:
     GraphShape shape_;
     DrawnSurface<3>* surface_ = nullptr;
     std::array<Number, 4> number_{};                // of the corners, around the polygon
-    std::array<std::vector<Number>, 4> between_{};  // vertices on the sides, likewise
+    std::array<std::vector<Number>, 4> between_{};  // vertices on the sides, in that order
     std::vector<double> at_centre_;                 // a value for each component
     bool centred_ = false;
 };

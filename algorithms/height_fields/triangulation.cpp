@@ -115,7 +115,7 @@ Decision Triangulation<Real>::look(const View& view, const Split& split) {
     below_ = 0;
     if (split.rule == nullptr) return {Visit::stop, 0};
     Decision decision{Visit::stop, split.rule->all()};
-    if (!stops_unasked(graph_.criterion->saturated(), view, split)) {
+    if (!stops_by_saturation(graph_.criterion->saturated(), view, split)) {
         decision = question_.ask(*graph_.walk, *graph_.criterion, view, split);
     }
     if (decision.visit == Visit::stop && !records_) {

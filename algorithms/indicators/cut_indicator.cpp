@@ -32,7 +32,7 @@ public:
     explicit CutEtas(std::size_t dense) : etas_{dense} {}
 
     template <class Offset>
-    void split(const MetSplit& s, Offset&&) {
+    void split(const PrerollSplit& s, Offset&&) {
         const auto of = numbers(s.keys);
         etas_.put_outside(*s.rule, s.outside, of);
         etas_.maxima().add_split(s.level, *s.rule, of, s.reach);

@@ -48,7 +48,7 @@ double distance_from_segment(const ImagePoint& x, const ImagePoint& a, const Ima
 struct Eye {
     Point towards;
     Point right;  ///< to the right side of the view, at distance 1 from the eye
-    Point up;     ///< likewise, to the upper side
+    Point up;     ///< to the upper side of the view, at distance 1 from the eye
 
     explicit Eye(const PerspectiveCamera& camera) {
         require_finite(camera.eye, "the eye");

@@ -90,7 +90,7 @@ struct Jump {
 template <std::size_t count>
 class SplitGradients {
 public:
-    /// Computes those at the new nodes from n on, as many as there are lanes.
+    /// Computes the gradients at new nodes n ... n + count - 1, or at fewer where the split ends.
     /// \param slopes at the new nodes
     void solve(const MeasuredSplit& split, const std::vector<std::vector<Slope>>& slopes,
                std::size_t n) {

@@ -24,7 +24,7 @@ inline double sum_of(std::span<const double> numbers) {
     return sum == greatest ? sum : rounded_up * sum;
 }
 
-/// Likewise the root of the sum of squares.
+/// Not below the root of the sum of squares, and equal to the only number that is not 0.
 inline double euclid_of(std::span<const double> numbers) {
     double greatest = 0;
     for (const double number : numbers) greatest = std::max(greatest, number);

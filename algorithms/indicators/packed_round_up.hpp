@@ -8,7 +8,11 @@
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/detail/pack.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
+
+using nestgrid::bfloat16_above;
+using nestgrid::distance_above;
+using nestgrid::sum_above;
 
 /// The next floats above x where the error is positive, else x. Requires x >= 0.
 template <std::size_t size>
@@ -41,4 +45,4 @@ Pack<std::uint32_t, size> bfloat16_above(const Pack<float, size>& x) {
     return (x.template as<std::uint32_t>() + Bits::all(0xFFFFU)) & Bits::all(0xFFFF0000U);
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

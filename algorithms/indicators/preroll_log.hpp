@@ -14,7 +14,7 @@ namespace nestgrid::engine {
 class PrerollLog {
 public:
     template <class Offset>
-    void split(const MetSplit& s, Offset&& offset) {
+    void split(const PrerollSplit& s, Offset&& offset) {
         items_.push_back({s.rule, s.level, s.outside, s.reach, s.keys.size()});
         keys_.insert(keys_.end(), s.keys.begin(), s.keys.end());
         for (std::size_t n = 0; n < s.rule->new_nodes.size(); ++n) numbers_.push_back(offset(n));

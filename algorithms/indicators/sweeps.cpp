@@ -72,21 +72,21 @@ void Sweeps::saturate(const SharedNodes* shared) {
 /// \param of numbers of the corners and, behind them, of the new nodes
 /// \return whether anything has changed
 inline bool Sweeps::sweep_split(const Rule& rule, std::span<const std::size_t> of, float reach) {
-    const auto hand = [&](const Below& b) {
-        return Below{hand_on(spread_, b.stop, reach), b.bound};
+    const auto hand = [&](const HandedOn& b) {
+        return HandedOn{hand_on(spread_, b.stop, reach), b.bound};
     };
     const bool sums = made_of_ != MadeOf::deviations;
     const auto of_node = [&](std::size_t node) {
-        return Below{nodes_[node].entry.stop, sums ? nodes_[node].bound() : std::uint16_t{0}};
+        return HandedOn{nodes_[node].entry.stop, sums ? nodes_[node].bound() : std::uint16_t{0}};
     };
-    const auto raise = [&](std::size_t node, const Below& to) {
+    const auto raise = [&](std::size_t node, const HandedOn& to) {
         Node& at = nodes_[node];
         const bool changed = at.entry.stop < to.stop || at.finer < to.bound;
         at.entry.stop = std::max(at.entry.stop, to.stop);
         at.finer = std::max(at.finer, to.bound);
         return changed;
     };
-    Below greatest;
+    HandedOn greatest;
     bool changed = raise_parents(rule, of, of_node, hand, raise, greatest);
     if (!rule.new_nodes.empty()) least_stop_ = std::min(least_stop_, greatest.stop);
     if (rule.inside != no_new_node) {

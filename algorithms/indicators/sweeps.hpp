@@ -19,7 +19,7 @@
 namespace nestgrid::engine {
 
 /// One split as a preroll meets it.
-struct MetSplit {
+struct PrerollSplit {
     const Rule* rule;
     int level;
     NodeMask outside;               ///< see the operation `outside`
@@ -48,7 +48,7 @@ public:
 
     /// \param offset offset(n) is |U_delta| of new node n, rounded up, 0 where the node hangs
     template <class Offset>
-    void split(const MetSplit& s, Offset&& offset);
+    void split(const PrerollSplit& s, Offset&& offset);
     /// A leaf and its error, or a coarse leaf and 0.
     void leaf(std::span<const NodeKey> corners, float error);
     /// Raises the new nodes of an element to its deviation.
@@ -97,11 +97,11 @@ private:
         return std::span(numbers_).first(keys.size());
     }
     /// The numbers that a new node hands to its parents, which spread `stop` first.
-    struct Below {
+    struct HandedOn {
         std::uint16_t stop = 0;
         std::uint16_t bound = 0;
 
-        friend Below max(const Below& a, const Below& b) {
+        friend HandedOn max(const HandedOn& a, const HandedOn& b) {
             return {std::max(a.stop, b.stop), std::max(a.bound, b.bound)};
         }
     };
@@ -121,7 +121,7 @@ private:
 };
 
 template <class Offset>
-NESTGRID_INLINE void Sweeps::split(const MetSplit& s, Offset&& offset) {
+NESTGRID_INLINE void Sweeps::split(const PrerollSplit& s, Offset&& offset) {
     const Rule& rule = *s.rule;
     const auto corners = static_cast<std::size_t>(rule.corner_count());
     const std::span<const std::size_t> number = numbers(s.keys);

@@ -119,7 +119,7 @@ public:
         : dirty_{&dirty}, entries_{&entries}, sweeps_{&sweeps} {}
 
     template <class Offset>
-    void split(const MetSplit& s, Offset&& offset) {
+    void split(const PrerollSplit& s, Offset&& offset) {
         raise_clean(s.keys);
         const auto corners = static_cast<std::size_t>(s.rule->corner_count());
         sweeps_->split(s, [&](std::size_t n) {

@@ -44,7 +44,7 @@ Bracket bracket_below(std::uint16_t within, std::uint16_t least, Fits&& fits) {
     return {within, within};
 }
 
-/// Goes up likewise from a code that does not fit, and gives the last one where none fits.
+/// Doubles steps upwards from a code that does not fit. Returns {last, last} where none fits.
 template <class Fits>
 Bracket bracket_above(std::uint16_t beyond, std::uint16_t last, Fits&& fits) {
     for (int step = 1; beyond < last; step = std::min(2 * step, octave)) {

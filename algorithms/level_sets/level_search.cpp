@@ -61,7 +61,7 @@ bool LevelSearch<Real>::looks_at_function(const View& view, const Split& split,
         functions.range(component, std::span<const Point>(x).first(view.corner_count()),
                         {static_cast<double>(range.lo), static_cast<double>(range.hi)},
                         static_cast<double>(view.value[component]),
-                        functions.stray(split.keys, view.interpolated == 0));
+                        functions.distance_beyond_hull(split.keys, view.interpolated == 0));
     return of_interest(static_cast<Real>(least), static_cast<Real>(greatest), 0, component, caps);
 }
 

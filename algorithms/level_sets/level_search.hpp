@@ -96,10 +96,10 @@ public:
     template <std::size_t around>
     PackedGlance<Real, around> glance(const PackedElements<Real, around>& e) const;
     /// Fetches the entries of nodes into the cache.
-    NESTGRID_INLINE void expect(const NodeKey* nodes, std::size_t rows) const {
+    NESTGRID_INLINE void prefetch(const NodeKey* nodes, std::size_t rows) const {
         if (entries_ == nullptr) return;
         for (std::size_t row = 0; row < rows; ++row) {
-            prefetch(*entries_, std::span<const NodeKey>(nodes + row * most_patches, pack));
+            engine::prefetch(*entries_, std::span<const NodeKey>(nodes + row * most_patches, pack));
         }
     }
 

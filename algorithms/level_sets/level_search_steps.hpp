@@ -109,7 +109,7 @@ NESTGRID_INLINE auto LevelSearch<Real>::look_plainly(const View& view, const Spl
     if (!(level.least_inside - range.hi <= bound && range.lo - level.greatest_outside <= bound)) {
         return {{Visit::skip, 0}, bound};
     }
-    if (stops_unasked(saturated_, view, split)) return {{Visit::stop, rule.all()}, bound};
+    if (stops_by_saturation(saturated_, view, split)) return {{Visit::stop, rule.all()}, bound};
     if (has_inside && low == 0) low = low_nodes(split.keys);
     low &= ~split.outside;
     return {{low == rule.all() ? Visit::stop : Visit::descend, low}, bound};
@@ -127,7 +127,7 @@ template <class Real>
 auto LevelSearch<Real>::look_anyhow(const View& view, const Split& split, bool caps,
                                     CriterionQuestion& question) const -> Sight {
     const Rule* const rule = split.rule;
-    if (rule != nullptr && entries_ != nullptr) prefetch(*entries_, *rule, split.keys);
+    if (rule != nullptr && entries_ != nullptr) engine::prefetch(*entries_, *rule, split.keys);
     // P_S U of an element that is walked lies within U's own range there, but for `beyond`.
     const Real bound = rule == nullptr ? Real(0)
                                        : std::max(bound_of(*rule, split.keys),
@@ -138,7 +138,7 @@ auto LevelSearch<Real>::look_anyhow(const View& view, const Split& split, bool c
     }
     if (!interest) return {{Visit::skip, 0}, bound};
     if (rule == nullptr) return {{Visit::stop, 0}, bound};
-    if (stops_unasked(saturated_, view, split)) {
+    if (stops_by_saturation(saturated_, view, split)) {
         return {{Visit::stop, rule->all()}, bound};
     }
     if (!asks_for_masks_) return {question.ask(*walk_, *criterion_, view, split), bound};

@@ -31,16 +31,16 @@ public:
     PackedSight<Real> see_ends(const PackedPatches<Real>& patches) override {
         return see<maubach_patch<dimension>, PatchParts::ends>(patches, *search_);
     }
-    void expect(const NodeKey* nodes, std::size_t rows) const override {
-        search_->expect(nodes, rows);
+    void prefetch(const NodeKey* nodes, std::size_t rows) const override {
+        search_->prefetch(nodes, rows);
     }
     bool names_edges() const override { return target_->surfaces.front().names_vertices(); }
     void begin_subtrees(std::uint32_t numbers) override {
         for (auto& surface : target_->surfaces) surface.within().begin_again(numbers);
     }
-    unsigned extract(const detail::ErasedPatches<dimension, Real>& patches,
+    unsigned extract(const ErasedPatches<dimension, Real>& patches,
                      const BatchSelection& selection) override {
-        using Patches = detail::ErasedPatches<dimension, Real>;
+        using Patches = ErasedPatches<dimension, Real>;
         return PatchDrawing<dimension, Real, Patches>(*target_, patches, selection).draw();
     }
     void tick(std::uint64_t calls, std::uint64_t visited) override {

@@ -14,7 +14,7 @@
 #include <patches/known_bisection.hpp>
 #include <surfaces/wide_point.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// Where a level set cuts edges.
 struct CutLevel {
@@ -27,8 +27,6 @@ struct BatchEdge {
     std::uint16_t low;   ///< the place where U < isovalue
     std::uint16_t high;  ///< the place where U >= isovalue
 };
-
-namespace detail {
 
 /// The cut of an edge.
 /// \param low, high positions of its ends
@@ -101,8 +99,6 @@ void cut_in_rows(const Batch& batch, std::span<const BatchEdge> edges, const Cut
     }
 }
 
-}  // namespace detail
-
 /// Sets to[i] to the point at which a level set cuts edges[i]. The points have the same bits
 /// whether the grid gives positions one by one, in packs or in rows.
 /// \param to has room for edges.size() points
@@ -117,20 +113,20 @@ void cut_edges(const Batch& batch, std::span<const BatchEdge> edges, const CutLe
         std::array<WidePoint, doubles_at_once> x;
         for (std::size_t i = 0; i < rest; ++i) last[i] = edges[whole.size() + i];
         batch.grid->template with_packed_positions<doubles_at_once>([&](const auto& positions) {
-            detail::cut_in_packs(batch, positions, whole, cut, to);
+            cut_in_packs(batch, positions, whole, cut, to);
             if (rest == 0) return;
             std::fill(last.begin() + rest, last.end(), last[0]);
-            detail::cut_in_packs(batch, positions, last, cut, x.data());
+            cut_in_packs(batch, positions, last, cut, x.data());
             std::copy_n(x.begin(), rest, to + whole.size());
         });
     } else if constexpr (AnswersInRows<Grid>) {
-        detail::cut_in_rows(batch, edges, cut, to);
+        cut_in_rows(batch, edges, cut, to);
     } else {
         for (const BatchEdge& edge : edges) {
-            *to++ = detail::cut_between(batch, edge, batch.position(edge.low),
-                                        batch.position(edge.high), cut);
+            *to++ =
+                cut_between(batch, edge, batch.position(edge.low), batch.position(edge.high), cut);
         }
     }
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

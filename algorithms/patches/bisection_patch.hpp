@@ -22,7 +22,7 @@
 
 #include <patches/known_bisection.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// The parts and the nodes of a patch. Nodes are numbered: first the corners of part 1, then the
 /// new nodes of parts 1 ... ends - 1, then the new nodes of the ends.
@@ -44,7 +44,7 @@ struct BisectionPatch {
         friend constexpr bool operator==(const Part&, const Part&) = default;
     };
 
-    /// What a traversal reaches that enters part 1 and a set of inner parts.
+    /// What a traversal visits if it enters part 1 and exactly this set of inner parts.
     struct Reached {
         std::uint8_t interior = 0;   ///< the set of inner parts that it reaches
         std::uint8_t ends = 0;       ///< the set of ends that it reaches
@@ -172,7 +172,7 @@ inline constexpr auto patch_orders = [] {
             return part < ends && (i >> (part - 2 + from) & 1U) != 0;
         };
         for (std::size_t end = 0; end < ends; ++end) {
-            // Lists a part at the first end in it.
+            // A part is listed once, when the loop meets its first end.
             const auto entered = static_cast<unsigned>(i % (std::size_t{1} << bits));
             const std::size_t part = pattern.part_above(end, ~entered);
             if (part < ends && (!is_set(part, bits) || end != pattern.first_end(part))) continue;
@@ -215,17 +215,14 @@ inline constexpr auto maubach_patch =
     BisectionPatch<static_cast<std::size_t>(dim) + 1, static_cast<std::size_t>(dim)>(
         maubach_bisections<dim>(), static_cast<std::size_t>(dim) - 1);
 
-namespace detail {
 template <class A, class B>
 constexpr bool is_same(const A& a, const B& b) {
     if constexpr (std::is_same_v<A, B>) return a == b;
     return false;
 }
-}  // namespace detail
-
 /// A grid whose patches are those of Maubach's bisections.
 template <class Grid>
 concept HasMaubachPatches = KnowsPatches<Grid> &&
-    detail::is_same(patch_of<Grid>, maubach_patch<Grid::dimension>);
+    is_same(patch_of<Grid>, maubach_patch<Grid::dimension>);
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

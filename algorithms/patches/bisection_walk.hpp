@@ -13,7 +13,7 @@
 
 #include <patches/patch_descent.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// Walks down from one element. A visitor has
 ///     Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside)
@@ -199,4 +199,4 @@ void BisectionWalk<Grid, Field, Visitor, whole>::extract_pending() {
     selection_.clear();
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

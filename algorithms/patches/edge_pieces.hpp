@@ -10,7 +10,7 @@
 #include <patches/batch_cuts.hpp>
 #include <patches/known_bisection.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// A piece of an edge, from its lower to its higher end.
 struct EdgePiece {
@@ -88,4 +88,4 @@ void find_pieces(const Batch& batch, const Field& field, std::span<const BatchEd
     }
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -14,7 +14,7 @@
 #include <patches/edge_pieces.hpp>
 #include <patches/mean_values.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid::engine {
 
 /// A PatchBatch of any grid whose patches are maubach_patch<dim>. Members have the names and
 /// meanings that they have there.
@@ -75,12 +75,16 @@ protected:
     ~ErasedPatches() = default;
 };
 
+}  // namespace nestgrid::engine
+
+namespace nestgrid::detail {
+
 /// What BisectionWalk and PatchWalk ask of a visitor, as virtual functions.
 template <int dim, class Real>
 class ErasedBisectionVisitor {
 public:
     struct Glance {
-        Visit visit;
+        engine::Visit visit;
         Real bound;
     };
 
@@ -91,18 +95,22 @@ public:
     /// Takes the counts of the whole walk, at its end.
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
     // The parts of maubach_patch<dim>: inner ones, and ends.
-    virtual PackedSight<Real> see_within(const PackedPatches<Real>& patches) = 0;
-    virtual PackedSight<Real> see_ends(const PackedPatches<Real>& patches) = 0;
-    virtual void expect(const NodeKey* nodes, std::size_t rows) const = 0;
+    virtual engine::PackedSight<Real> see_within(const engine::PackedPatches<Real>& patches) = 0;
+    virtual engine::PackedSight<Real> see_ends(const engine::PackedPatches<Real>& patches) = 0;
+    virtual void prefetch(const NodeKey* nodes, std::size_t rows) const = 0;
     virtual bool names_edges() const = 0;
     virtual void begin_subtrees(std::uint32_t numbers) = 0;
-    virtual unsigned extract(const ErasedPatches<dim, Real>& patches,
-                             const BatchSelection& selection) = 0;
+    virtual unsigned extract(const engine::ErasedPatches<dim, Real>& patches,
+                             const engine::BatchSelection& selection) = 0;
 
 protected:
     ErasedBisectionVisitor() = default;
     ~ErasedBisectionVisitor() = default;
 };
+
+}  // namespace nestgrid::detail
+
+namespace nestgrid::engine {
 
 /// A visitor for BisectionWalk that forwards all calls to an ErasedBisectionVisitor.
 template <HasMaubachPatches Grid, class Field>
@@ -111,7 +119,7 @@ class BisectionForwarder {
     using Real = typename Field::value_type;
 
 public:
-    BisectionForwarder(const Field& field, ErasedBisectionVisitor<dim, Real>& to)
+    BisectionForwarder(const Field& field, detail::ErasedBisectionVisitor<dim, Real>& to)
         : field_{&field}, to_{&to} {}
 
     auto glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside) {
@@ -125,7 +133,7 @@ public:
     PackedSight<Real> see(const PackedPatches<Real>& patches) {
         return which == PatchParts::ends ? to_->see_ends(patches) : to_->see_within(patches);
     }
-    void expect(const NodeKey* nodes, std::size_t rows) const { to_->expect(nodes, rows); }
+    void prefetch(const NodeKey* nodes, std::size_t rows) const { to_->prefetch(nodes, rows); }
     template <class Batch>
     unsigned extract(const Batch& batch, const BatchSelection& selection) {
         return to_->extract(Patches<Batch>(batch, *field_), selection);
@@ -165,7 +173,7 @@ private:
         }
         Handle element(std::size_t id, std::size_t part) const override {
             Handle handle;
-            set_handle(handle, of->element(id, part));
+            detail::set_handle(handle, of->element(id, part));
             return handle;
         }
         unsigned boundary(std::size_t id, std::size_t part) const override {
@@ -177,12 +185,12 @@ private:
     };
 
     const Field* field_;
-    ErasedBisectionVisitor<dim, Real>* to_;
+    detail::ErasedBisectionVisitor<dim, Real>* to_;
 };
 
 /// Walks the bisections below an element, and tells the visitor the counts of the walk at its end.
 template <class Grid, class Field, class Real>
-void walk_for(ErasedBisectionVisitor<Grid::dimension, Real>& visitor, const Grid& grid,
+void walk_for(detail::ErasedBisectionVisitor<Grid::dimension, Real>& visitor, const Grid& grid,
               const Field& field, const ElementOf<Grid>& e, const Real* values, int level,
               int orientation) {
     BisectionForwarder<Grid, Field> forward(field, visitor);
@@ -190,4 +198,4 @@ void walk_for(ErasedBisectionVisitor<Grid::dimension, Real>& visitor, const Grid
                     [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
 }
 
-}  // namespace nestgrid::detail
+}  // namespace nestgrid::engine

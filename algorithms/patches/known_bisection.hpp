@@ -68,7 +68,7 @@
 #include <nestgrid/detail/pack.hpp>
 #include <walk/visit.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 template <class Grid, class Field>
 concept KnowsBisections = requires(const Grid& grid, const Field& field, const ElementOf<Grid>& e,
@@ -117,4 +117,4 @@ concept KnowsPatches = requires(const Grid& grid) {
     };
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -12,7 +12,7 @@
 #include <nestgrid/keys.hpp>
 #include <patches/known_bisection.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// A field whose values at new nodes are means of those at the parents.
 template <class Field>
@@ -36,7 +36,7 @@ protected:
     CarriedValues& operator=(CarriedValues&&) noexcept = default;
 };
 
-/// Those of a field with known bisections (known_bisection.hpp), which is borrowed.
+/// CarriedValues read from a borrowed field with known bisections (known_bisection.hpp).
 template <class Grid, class Field>
 class CarriedField final : public CarriedValues<Grid> {
 public:
@@ -86,4 +86,4 @@ private:
     const CarriedValues<Grid>* carried_;
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -28,7 +28,7 @@
 #include <patches/subtree_nodes.hpp>
 #include <surfaces/wide_point.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// The places of a batch: first all nodes of patches, then the corners of single elements.
 template <const auto& pattern>
@@ -235,4 +235,4 @@ private:
     }
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -24,7 +24,7 @@ class PatchContourRun {
 public:
     using Cut = BatchEdge;
     using Corners = std::array<std::uint16_t, 3>;  // numbers of cuts; a segment has two
-    struct Four {
+    struct Quad {
         std::uint16_t first_simplex;
         std::array<std::uint16_t, 4> cut;
         std::uint16_t mirrored;  // odd: its simplex is mirrored
@@ -32,9 +32,9 @@ public:
     };
 
     // Limits for a full batch of patches and as many single simplices.
-    static constexpr std::size_t most_fours = most_patches * (pattern.ends + 1);
-    static constexpr std::size_t most_cuts = 4 * most_fours;
-    static constexpr std::size_t most_simplices = 2 * most_fours;
+    static constexpr std::size_t most_quads = most_patches * (pattern.ends + 1);
+    static constexpr std::size_t most_cuts = 4 * most_quads;
+    static constexpr std::size_t most_simplices = 2 * most_quads;
 
     /// Appends the contour of a patch or a single simplex.
     /// \param id its id in the batch
@@ -46,13 +46,13 @@ public:
         const auto turned = static_cast<std::uint16_t>(mirrored ? 1 : 0);
         const Eight by_slot{slot, slot, slot, slot, slot, slot, slot, slot};
         const Eight by_first{first, first, first, first, first, first, first, first};
-        const Eight by_four{simplex, first, first, first, first, turned, 0, 0};
+        const Eight by_quad{simplex, first, first, first, first, turned, 0, 0};
         const auto* const cuts = front.cuts(contour);
         const auto* const simplices = front.simplices(contour, mirrored);
-        const auto* const fours = front.fours(contour);
+        const auto* const quads = front.quads(contour);
         constexpr std::size_t cuts_at_once = 12;
         constexpr std::size_t simplices_at_once = 8;
-        constexpr std::size_t fours_at_once = 2;
+        constexpr std::size_t quads_at_once = 2;
         const auto put_cuts = [&](std::size_t from) NESTGRID_INLINE_LAMBDA {
             widen<2 * cuts_at_once, most_patches>(cuts + from, cut_.data() + cut_count + from,
                                                   by_slot);
@@ -62,19 +62,19 @@ public:
                                             simplex_.data() + simplex_count + from, by_first);
         };
         const auto put_fours = [&](std::size_t from) NESTGRID_INLINE_LAMBDA {
-            widen<8 * fours_at_once, 1>(fours + from, four_.data() + four_count + from, by_four);
+            widen<8 * quads_at_once, 1>(quads + from, quad_.data() + quad_count + from, by_quad);
         };
         put_cuts(0);
         put_simplices(0);
         put_fours(0);
         for (std::size_t i = cuts_at_once; i < contour.cut_count; i += cuts_at_once) put_cuts(i);
-        for (std::size_t i = fours_at_once; i < contour.four_count; i += fours_at_once) {
+        for (std::size_t i = quads_at_once; i < contour.quad_count; i += quads_at_once) {
             put_fours(i);
         }
         if (contour.simplex_count > simplices_at_once) put_simplices(simplices_at_once);
         cut_count += contour.cut_count;
         simplex_count += contour.simplex_count;
-        four_count += contour.four_count;
+        quad_count += contour.quad_count;
     }
     /// Appends the contour of one part of a patch of which not all drawn parts are selected.
     NESTGRID_NOINLINE void append_alone(const PatchContours& contours, unsigned bits,
@@ -82,23 +82,23 @@ public:
 
     std::size_t cut_count = 0;
     std::size_t simplex_count = 0;
-    std::size_t four_count = 0;
+    std::size_t quad_count = 0;
 
     NESTGRID_INLINE std::span<const Cut> cuts() const { return {cut_.data(), cut_count}; }
-    NESTGRID_INLINE std::span<const Four> fours() const { return {four_.data(), four_count}; }
+    NESTGRID_INLINE std::span<const Quad> quads() const { return {quad_.data(), quad_count}; }
     NESTGRID_INLINE std::span<const Corners> simplices() const {
         return {simplex_.data(), simplex_count};
     }
     /// Divides a quadrilateral into two triangles.
     /// \param other whether to divide it along the diagonal from its second cut, not from its first
-    NESTGRID_INLINE void divide(const Four& four, bool other) {
+    NESTGRID_INLINE void divide(const Quad& quad, bool other) {
         // The corners of both triangles; a mirrored simplex swaps the first two of each.
         static constexpr std::array<std::array<std::uint8_t, 6>, 4> order{
             {{0, 1, 2, 2, 3, 0}, {1, 0, 2, 3, 2, 0}, {1, 2, 3, 3, 0, 1}, {2, 1, 3, 0, 3, 1}}};
-        const auto& of = order[(other ? 2U : 0U) + four.mirrored % 2U];
-        Corners* const to = &simplex_[four.first_simplex];
-        to[0] = {four.cut[of[0]], four.cut[of[1]], four.cut[of[2]]};
-        to[1] = {four.cut[of[3]], four.cut[of[4]], four.cut[of[5]]};
+        const auto& of = order[(other ? 2U : 0U) + quad.mirrored % 2U];
+        Corners* const to = &simplex_[quad.first_simplex];
+        to[0] = {quad.cut[of[0]], quad.cut[of[1]], quad.cut[of[2]]};
+        to[1] = {quad.cut[of[3]], quad.cut[of[4]], quad.cut[of[5]]};
     }
 
 private:
@@ -134,7 +134,7 @@ private:
     // Entries behind the counts are padding that append() overwrites.
     std::array<Cut, most_cuts + 32> cut_;
     std::array<Corners, most_simplices + 16> simplex_;
-    std::array<Four, most_fours + 8> four_;
+    std::array<Quad, most_quads + 8> quad_;
 };
 
 template <const auto& pattern>
@@ -147,12 +147,12 @@ void PatchContourRun<pattern>::append_alone(const PatchContours& contours, unsig
         cut[i] = static_cast<std::uint16_t>(cut_count);
         cut_[cut_count++] = {places[piece.cut[i].low], places[piece.cut[i].high]};
     }
-    const Four four{static_cast<std::uint16_t>(simplex_count),
+    const Quad quad{static_cast<std::uint16_t>(simplex_count),
                     cut,
                     mirrored ? std::uint16_t{1} : std::uint16_t{0},
                     {}};
-    divide(four, false);
-    if (piece.count == 4) four_[four_count++] = four;
+    divide(quad, false);
+    if (piece.count == 4) quad_[quad_count++] = quad;
     simplex_count += piece.count == 4 ? 2 : 1;
 }
 

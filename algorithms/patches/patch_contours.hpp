@@ -37,17 +37,17 @@ public:
     struct Contour {
         std::uint32_t first_cut = 0;
         std::uint32_t first_simplex = 0;
-        std::uint32_t first_four = 0;
+        std::uint32_t first_quad = 0;
         std::uint8_t cut_count = 0;
         std::uint8_t simplex_count = 0;
         std::uint8_t parts = 0;      ///< parts that have a loop, one bit at the first end of each
         std::uint8_t depth : 4 = 0;  ///< depth in the patch of the deepest of these parts
-        std::uint8_t four_count : 4 = 0;
+        std::uint8_t quad_count : 4 = 0;
     };
     /// The three cuts that are the corners of a triangle; in two dimensions the first two.
     using Corners = std::array<std::uint8_t, 3>;
     /// A quadrilateral of four cuts, drawn as two triangles along either diagonal.
-    struct Four {
+    struct Quad {
         std::uint8_t first_simplex;  ///< the first of the two triangles in the contour
         std::array<std::uint8_t, 4> cut;
         std::uint8_t mirrored;  ///< whether its simplex is mirrored relative to the patch
@@ -72,8 +72,8 @@ public:
             // Branch-free: mirroring is unpredictable.
             return simplices_.data() + c.first_simplex + (c.simplex_count & (mirrored ? ~0U : 0U));
         }
-        NESTGRID_INLINE const Four* fours(const Contour& c) const {
-            return fours_.data() + c.first_four;
+        NESTGRID_INLINE const Quad* quads(const Contour& c) const {
+            return quads_.data() + c.first_quad;
         }
 
     private:
@@ -84,7 +84,7 @@ public:
         std::vector<Contour> contours_;
         std::vector<Cut> cuts_;
         std::vector<Corners> simplices_;
-        std::vector<Four> fours_;
+        std::vector<Quad> quads_;
     };
 
     /// The tables of a pattern of bisections. The first call makes them.
@@ -169,7 +169,7 @@ struct PatchContours::Maker {
         number = {};
         contour.first_cut = static_cast<std::uint32_t>(front.cuts_.size());
         contour.first_simplex = static_cast<std::uint32_t>(front.simplices_.size());
-        contour.first_four = static_cast<std::uint32_t>(front.fours_.size());
+        contour.first_quad = static_cast<std::uint32_t>(front.quads_.size());
     }
     /// Adds the loop of a part to the contour.
     /// \param first_row the row of node 0 in a batch
@@ -191,8 +191,8 @@ struct PatchContours::Maker {
             cut[i] = static_cast<std::uint8_t>(known - 1);
         }
         if (piece.count == 4) {
-            front.fours_.push_back({contour.simplex_count, cut, part.mirrored, {}});
-            contour.four_count = static_cast<std::uint8_t>(contour.four_count + 1) & 15U;
+            front.quads_.push_back({contour.simplex_count, cut, part.mirrored, {}});
+            contour.quad_count = static_cast<std::uint8_t>(contour.quad_count + 1) & 15U;
         }
         add_corners({cut[0], cut[1], cut[2]}, part.mirrored);
         if (piece.count == 4) add_corners({cut[2], cut[3], cut[0]}, part.mirrored);
@@ -231,11 +231,11 @@ struct PatchContours::Maker {
         }
         front.cuts_.resize(front.cuts_.size() + 4 * pack);
         front.simplices_.resize(front.simplices_.size() + 3 * pack);
-        front.fours_.resize(front.fours_.size() + pack);
+        front.quads_.resize(front.quads_.size() + pack);
         front.contours_.shrink_to_fit();
         front.cuts_.shrink_to_fit();
         front.simplices_.shrink_to_fit();
-        front.fours_.shrink_to_fit();
+        front.quads_.shrink_to_fit();
         return std::move(front);
     }
 };

@@ -6,7 +6,7 @@
 
 #include <patches/patch_walk_nodes.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 template <class Grid, class Field, class Visitor>
 void PatchWalk<Grid, Field, Visitor>::run(const std::array<Node, 4>& n,
@@ -118,7 +118,7 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::look_at(Batch& batch, std:
         if constexpr (requires { visitor_->template see<which>(patches); }) {
             return visitor_->template see<which>(patches);
         } else {
-            return nestgrid::see<pattern_, which>(patches, *visitor_);
+            return engine::see<pattern_, which>(patches, *visitor_);
         }
     }();
     seen.descend.store(descend.data() + first);
@@ -323,4 +323,4 @@ void PatchWalk<Grid, Field, Visitor>::finish(Queue& next) {
     next.taken = 0;
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

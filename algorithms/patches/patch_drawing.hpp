@@ -153,7 +153,7 @@ private:
         Run run;
         append_contours(run);
         if (run.simplex_count == 0) return;
-        surface_->add_extracted(run.simplex_count - run.four_count);
+        surface_->add_extracted(run.simplex_count - run.quad_count);
         target_->tally->add(run.simplex_count);
         if (surface_->counts_only()) return;
         if (surface_->builder().takes_batches() && !target_->carries && !target_->at_nodes) {
@@ -166,11 +166,11 @@ private:
         } else {
             make_vertices(run.cuts(), v.data());
         }
-        for (const auto& four : run.fours()) {
-            const auto x = [&](std::size_t i) { return surface_->position(v[four.cut[i]]); };
-            run.divide(four, !shorter(x(0), x(2), x(1), x(3)));
+        for (const auto& quad : run.quads()) {
+            const auto x = [&](std::size_t i) { return surface_->position(v[quad.cut[i]]); };
+            run.divide(quad, !shorter(x(0), x(2), x(1), x(3)));
         }
-        std::array<ExtractedElement, Run::most_fours> elements;
+        std::array<ExtractedElement, Run::most_quads> elements;
         const std::size_t count =
             surface_->builder().keeps_elements() ? list_elements(elements) : 0;
         surface_->builder().add_extracted(std::span<const ExtractedElement>(elements).first(count),
@@ -185,16 +185,16 @@ private:
     NESTGRID_INLINE void hand_over(Run& run) {
         std::array<WidePoint, Run::most_cuts> x;
         cut(run.cuts(), true, x.data());
-        for (const auto& four : run.fours()) {
-            const auto at = [&](std::size_t i) { return Point(x[four.cut[i]]); };
-            run.divide(four, !shorter(at(0), at(2), at(1), at(3)));
+        for (const auto& quad : run.quads()) {
+            const auto at = [&](std::size_t i) { return Point(x[quad.cut[i]]); };
+            run.divide(quad, !shorter(at(0), at(2), at(1), at(3)));
         }
         surface_->builder().take_batch({reinterpret_cast<const double*>(x.data()),
                                         sizeof(WidePoint) / sizeof(double), run.simplices()});
     }
 
     /// Lists the drawn elements in order. \return their number
-    std::size_t list_elements(std::array<ExtractedElement, Run::most_fours>& elements) const {
+    std::size_t list_elements(std::array<ExtractedElement, Run::most_quads>& elements) const {
         std::size_t count = 0;
         for (const Entry& entry : entries()) {
             for_each_part(entry, [&](std::size_t part, unsigned bits) {

@@ -15,7 +15,7 @@
 #include <patches/bisection_patch.hpp>
 #include <patches/subtree_nodes.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// The least and the greatest of an element's corner values.
 /// \tparam Number Real or a Pack
@@ -117,4 +117,4 @@ NESTGRID_INLINE PackedSight<Real> see(const PackedPatches<Real>& patches, Visito
     return seen;
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

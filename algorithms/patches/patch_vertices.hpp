@@ -119,7 +119,7 @@ NESTGRID_INLINE void PatchDrawing<dimension, Real, Patches>::cut(std::span<const
     cut_pieces(cuts, adds, to);
 }
 
-/// Does so piece by piece, for normals and for cuts on finest pieces.
+/// Sets to[i] as cut() does, but piece by piece: for normals, and for cuts on finest pieces.
 template <int dimension, class Real, class Patches>
 NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::cut_pieces(
     std::span<const BatchEdge> cuts, bool adds, WidePoint* to) {

@@ -17,7 +17,7 @@
 #include <patches/mean_values.hpp>
 #include <patches/patch_batch.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// Counts the elements of a walk.
 struct WalkCounts {
@@ -48,7 +48,7 @@ private:
 ///     PackedGlance glance(const PackedElements&) decides about eight elements at once; or instead
 ///     PackedSight see<PatchParts>(const PackedPatches&)
 ///                                             decides about parts of eight patches at once
-///     void expect(const NodeKey* nodes, std::size_t rows)
+///     void prefetch(const NodeKey* nodes, std::size_t rows)
 ///                                             optional: the walk will ask about eight nodes in
 ///                                             each of these rows, most_patches apart
 ///     unsigned extract(const PatchBatch&, const BatchSelection&)
@@ -150,8 +150,8 @@ private:
     void halve_values(Batch& batch, std::size_t node, std::size_t first, std::size_t end) const;
     void make_nodes(Batch& batch) const;
     void ask_for_nodes(Batch& batch) const;
-    NESTGRID_INLINE void expect(const NodeKey* keys, std::size_t rows = 1) const {
-        if constexpr (requires { visitor_->expect(keys, rows); }) visitor_->expect(keys, rows);
+    NESTGRID_INLINE void prefetch(const NodeKey* keys, std::size_t rows = 1) const {
+        if constexpr (requires { visitor_->prefetch(keys, rows); }) visitor_->prefetch(keys, rows);
     }
     template <PatchParts which>
     void look_at(Batch& batch, std::size_t first, const NodeKey* keys, Row<MaskOf<Real>>& descend,
@@ -200,4 +200,4 @@ private:
     int subtree_level_ = 0;  // the level on which subtrees begin
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -7,7 +7,7 @@
 
 #include <patches/patch_walk.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// Sets ends[b] to whether the ends of patch b are split. Asks about one end of a patch, because
 /// the grid splits all of them or none.
@@ -94,7 +94,7 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::make_nodes(Batch& batch) c
     });
     for (std::size_t first = 0; first < batch.count; first += pack) {
         constexpr std::size_t unseen = corners_ + 1;
-        expect(batch.keys[unseen] + first, pattern_.nodes - unseen);
+        prefetch(batch.keys[unseen] + first, pattern_.nodes - unseen);
     }
     each_new_node([&](auto at, std::size_t first) NESTGRID_INLINE_LAMBDA {
         if constexpr (GivesMeans<Field>) {
@@ -117,7 +117,7 @@ void PatchWalk<Grid, Field, Visitor>::ask_for_nodes(Batch& batch) const {
         grid_->middles(row(batch.nodes[from]), row(batch.nodes[to]), row(batch.nodes[at]));
         grid_->keys(row(batch.nodes[at]), row(batch.keys[at]));
         for (std::size_t first = 0; at > corners_ && first < batch.count; first += pack) {
-            expect(batch.keys[at] + first);
+            prefetch(batch.keys[at] + first);
         }
     }
     for (std::size_t at = corners_; at < pattern_.nodes; ++at) {
@@ -172,8 +172,8 @@ NESTGRID_INLINE void PatchWalk<Grid, Field, Visitor>::find_new_nodes(const Batch
         std::fill(keys.begin() + end, keys.begin() + to, keys[first]);
     }
     for (std::size_t at = from; at < to; at += pack) {
-        expect(ends.keys[0].data() + at, ends.keys.size());
+        prefetch(ends.keys[0].data() + at, ends.keys.size());
     }
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -23,7 +23,7 @@
 #include <nestgrid/detail/pack.hpp>
 #include <patches/bisection_patch.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// The number of patches that are walked side by side, and of subtrees.
 inline constexpr std::size_t most_patches = 32;
@@ -141,4 +141,4 @@ public:
     }
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -32,7 +32,7 @@ void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element,
     const Grid grid(hierarchy, task);
     const auto& e = told_element<dim>(element);
     const ToldValues<Real> field(*hierarchy.bisection_rows(), hierarchy.facts().gradients_at_nodes);
-    detail::walk_for(visitor, grid, field, e, values, level, orientation);
+    walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
 void bisect_means(const Hierarchy<double>& hierarchy, Task* task, const Handle& element,
@@ -48,7 +48,7 @@ void bisect_means(const Hierarchy<double>& hierarchy, Task* task, const Handle& 
     const ToldValues<double> told(*rows, false);
     const CarriedField<Grid, ToldValues<double>> carried(told);
     const MeanValues<Grid> field(tolerance, carried);
-    detail::walk_for(visitor, grid, field, told_element<3>(element), values, level, orientation);
+    walk_for(visitor, grid, field, told_element<3>(element), values, level, orientation);
 }
 
 #define NESTGRID_INSTANTIATE(dim, Real)                                                       \

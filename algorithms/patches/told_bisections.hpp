@@ -151,7 +151,8 @@ private:
 template <int dim, class Real>
 void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element, const Real* values,
             int level, int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
-/// Does so for a function of position (Hierarchy::bisect_means). Requires facts().bisects_means.
+/// Walks the patches with values of an affine function, interpolated at new nodes
+/// (Hierarchy::bisect_means). Requires facts().bisects_means.
 void bisect_means(const Hierarchy<double>& hierarchy, Task* task, const Handle& element,
                   const double* values, double tolerance, int level, int orientation,
                   detail::ErasedBisectionVisitor<3, double>& visitor);

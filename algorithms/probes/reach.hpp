@@ -19,7 +19,7 @@ namespace nestgrid::engine {
 
 class Reach {
 public:
-    /// Of grids on which nothing reaches beyond.
+    /// For grids on which no element reaches beyond its corners.
     Reach() = default;
     /// Walks the whole grid.
     /// \param walk must carry positions and what the criterion wants; what it places counts, too

@@ -46,7 +46,7 @@ void require_drawn_on_ranks(const Criterion& criterion, const Bounds& bounds,
 
 /// A criterion as settle() compares it.
 std::string name_of(const Criterion& criterion);
-/// What a surface is asked for with, likewise.
+/// The options of a surface as settle() compares them.
 template <class Real>
 std::string asked_for(std::span<const Level<Real>> levels, const Criterion& criterion,
                       const IsosurfaceOptions& options);

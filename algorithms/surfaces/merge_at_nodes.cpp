@@ -30,7 +30,8 @@ public:
                 [&](Vertex v) { return bool{on_line_[v]}; });
             links_.find(triangles_, on_line_);
             if (cancel_pairs()) links_.find(triangles_, on_line_);
-        } while (classes_.join_neighbours(triangles_) || classes_.take_offenders_apart(links_));
+        } while (classes_.join_neighbours(triangles_) ||
+                 classes_.split_nonmanifold_classes(links_));
         find_boundary();
         return rewrite();
     }
@@ -45,7 +46,7 @@ private:
     NodeClasses classes_;
     std::vector<NumberedTriangle> triangles_;
     std::vector<bool> on_line_;  // by vertex: whether merging and flips may have changed its link
-    VertexLinks links_;          // of these
+    VertexLinks links_;          // of the vertices marked in on_line_
 };
 
 /// Renames the vertices of all triangles, and leaves out those that repeat a vertex.

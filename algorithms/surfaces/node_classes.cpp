@@ -76,7 +76,7 @@ bool NodeClasses::is_folded(Vertex v, VertexLink link) const {
     return widest_direction(directions).cosine <= 0;
 }
 
-bool NodeClasses::take_offenders_apart(const VertexLinks& links) {
+bool NodeClasses::split_nonmanifold_classes(const VertexLinks& links) {
     std::vector<Vertex> offenders;
     links.for_each([&](Vertex v, VertexLink link) {
         bool shares = false;

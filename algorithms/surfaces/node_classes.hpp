@@ -55,7 +55,7 @@ public:
     /// whose fan is folded, so that no normal agrees with all of its triangles.
     /// \param links of all vertices that stand for classes, at least
     /// \return whether there were any
-    bool take_offenders_apart(const VertexLinks& links);
+    bool split_nonmanifold_classes(const VertexLinks& links);
 
 private:
     NodeKey key(Vertex v) const { return at_nodes_.node[entry_[v]].key; }

@@ -54,7 +54,7 @@ inline void corner_gradients(const Topology& t, std::span<const Point> x,
         std::ranges::fill(out, corner_gradient(t, x, value, 0));
         return;
     }
-    if (t.dimension == 3 && t.corners == 8 && detail::is_parallelepiped(x.first<8>())) {
+    if (t.dimension == 3 && t.corners == 8 && is_parallelepiped(x.first<8>())) {
         const DualVectors dual = dual_vectors({x[1] - x[0], x[2] - x[0], x[4] - x[0]}, 3);
         for (std::size_t i = 0; i < 8; ++i) {
             const auto rise = [&](std::size_t axis) { return value[i | axis] - value[i & ~axis]; };

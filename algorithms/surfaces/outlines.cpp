@@ -16,8 +16,8 @@ namespace {
 
 using OrderedSide = std::array<std::uint32_t, 2>;
 
-/// The sides of some triangles of which no other of these triangles has the same.
-class LonelySides {
+/// Finds the sides that exactly one triangle of a set has.
+class UnpairedSides {
 public:
     /// The sides that exactly one of the triangles has, turned as there. Valid until the next call.
     std::span<const OrderedSide> of(std::span<const std::array<std::uint32_t, 3>> triangles) {
@@ -94,7 +94,7 @@ void require_outlined(const Surface<3>& surface) {
 
 Surface<2> outlines(const Surface<3>& surface) {
     require_outlined(surface);
-    LonelySides sides;
+    UnpairedSides sides;
     Outlines result(surface);
     const std::span triangles(surface.simplices);
     for (std::size_t first = 0; first < triangles.size();) {

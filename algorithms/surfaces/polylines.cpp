@@ -33,9 +33,9 @@ public:
         }
     }
 
-    /// Whether a segment that begins in a vertex is left.
+    /// Whether an unused segment starts at the vertex.
     bool leaves(std::uint32_t vertex) const { return next_from_[vertex] != no_vertex; }
-    /// Whether more segments are left that begin in a vertex than such that end there.
+    /// Whether more unused segments start than end at the vertex.
     bool begins(std::uint32_t vertex) const { return excess_[vertex] > 0; }
 
     /// Follows segments from a vertex until none leaves or the vertex is met again. Requires

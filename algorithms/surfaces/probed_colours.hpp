@@ -24,7 +24,7 @@ public:
     /// \throw InvalidInput where the surface has more attributes than the data have components
     std::vector<double> misses_at(std::span<const ColourSample> samples) const;
     /// Gives the data at their places to all vertices from a number on, but those outside the
-    /// domain. \throw InvalidInput likewise
+    /// domain. \throw InvalidInput as misses_at()
     void colour_from(std::size_t first);
 
 private:

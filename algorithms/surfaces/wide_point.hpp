@@ -9,7 +9,7 @@
 #include <nestgrid/detail/geometry.hpp>
 #include <nestgrid/detail/inlining.hpp>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// Operations have the results of those on a Point, to the last bit, where the compiler does not
 /// fuse products and sums (-ffp-contract=off, or a machine that cannot).
@@ -59,4 +59,4 @@ private:
 #endif
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -12,7 +12,7 @@ namespace nestgrid::engine {
 /// Whether an element stops without a question: a saturated criterion that is above 0 at a corner
 /// is 1 at all new nodes. No element may stop at a new node that lies outside.
 template <class Real>
-bool stops_unasked(bool saturated, const ElementView<Real>& view, const Split& split) {
+bool stops_by_saturation(bool saturated, const ElementView<Real>& view, const Split& split) {
     return saturated && view.interpolated != 0 && split.outside == 0;
 }
 

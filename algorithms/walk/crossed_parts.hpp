@@ -24,7 +24,7 @@ namespace nestgrid::engine {
 
 class CrossingNodes;
 
-/// A closed face that no element above the one at hand has.
+/// A closed face found by key: no ancestor of the current element has it as a face.
 class CrossedFace {
 public:
     /// \param corner, halving keys of the corners and of the nodes that halve it first
@@ -49,7 +49,7 @@ public:
     ClosedFace face{nullptr, &halved_, &nodes_};
 };
 
-/// The memory of closed parts that were found by key; a part stays where it is.
+/// Owns the closed edges and faces found by key. Addresses stay valid until clear().
 template <class Real>
 struct CrossedParts {
     std::deque<MaximalEdge<Real>> edges;

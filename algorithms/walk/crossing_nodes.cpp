@@ -35,7 +35,8 @@ NodeKey parents_of(const KeyPair& pair) {
 
 }  // namespace
 
-NodeMask CrossingNodes::made_otherwise(const Rule& rule, std::span<const NodeKey> keys) const {
+NodeMask CrossingNodes::made_by_other_stencils(const Rule& rule,
+                                               std::span<const NodeKey> keys) const {
     NodeMask mask = 0;
     const auto corners = static_cast<std::size_t>(rule.corner_count());
     for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
@@ -70,7 +71,7 @@ void CrossingSearch<Real>::add_split(const Rule& rule, std::span<const NodeKey> 
         for (std::size_t i = 0; i < stencil.count; ++i) made.parent[i] = keys[stencil.parent[i]];
         const NodeKey node = keys[corners + n];
         const auto [first, is_new] = made_.insert(node, made);
-        first->otherwise = first->otherwise || first->parents != made.parents;
+        first->has_other_stencils = first->has_other_stencils || first->parents != made.parents;
         if (!is_new) continue;
         const auto given = walk_->hierarchy().hanging_parents(node);
         if (given[0] != given[1]) probe.add_parents(node, {given[0], given[1]});
@@ -99,13 +100,13 @@ void CrossingSearch<Real>::refuse(NodeKey node, const std::string& what) const {
 template <class Real>
 bool CrossingSearch<Real>::crosses(NodeKey node, const Made& made) const {
     const KeyPair* edge = probe_->parents_on_edge(node);
-    if (edge != nullptr) return made.otherwise || parents_of(*edge) != made.parents;
-    if (made.otherwise && hanging_->contains(node)) {
+    if (edge != nullptr) return made.has_other_stencils || parents_of(*edge) != made.parents;
+    if (made.has_other_stencils && hanging_->contains(node)) {
         refuse(node,
                "hangs, elements that divide a face in different directions make it of different "
                "parents, and the grid does not give those between which it hangs");
     }
-    return made.otherwise;
+    return made.has_other_stencils;
 }
 
 template <class Real>
@@ -177,7 +178,7 @@ void CrossingSearch<Real>::need_around() {
     for_each_element(*walk_, true, [&](const ElementView<Real>& view, const Split& split) {
         if (split.rule == nullptr) return;
         const std::span<const NodeKey> keys = walk_->split_keys(view, split, room);
-        const NodeMask crossing = found_->made_otherwise(*split.rule, keys);
+        const NodeMask crossing = found_->made_by_other_stencils(*split.rule, keys);
         if (crossing == 0) return;
         for (const Child& child : split.rule->children) {
             need_around(child, crossing, view.corner_count(), keys);

@@ -39,11 +39,11 @@ struct FixedNode {
     Point position{};
     bool crosses = false;
     bool hangs = false;
-    // Where it hangs: its stencil over fixed nodes with lower numbers.
+    // Set if the node hangs: its stencil over fixed nodes with lower numbers.
     Stencil stencil{};
     std::array<std::uint32_t, max_corners> parent{};
     NodeKey parents = 0;  ///< a hash of their keys
-    // Where it does not: an element that makes it, or a coarse element that has it for a corner.
+    // Set otherwise: an element that creates the node, or a coarse element with this corner.
     const Rule* rule = nullptr;  ///< null on the coarse grid
     std::size_t element = 0;     ///< in elements(), or the number of the coarse element
     std::uint8_t node = 0;       ///< new node of the rule, or corner
@@ -60,10 +60,10 @@ public:
         return nodes_.capacity() * sizeof(FixedNode) + elements_.memory_bytes() +
                number_.memory_bytes();
     }
-    /// The crossing nodes that an element makes by a stencil that is not the node's own, or that
-    /// hang nowhere, one bit each.
+    /// Mask of the new nodes at which this element's stencil must not be used: another stencil is
+    /// the node's, or the node does not hang.
     /// \param keys of the corners, then of the new nodes
-    NodeMask made_otherwise(const Rule& rule, std::span<const NodeKey> keys) const;
+    NodeMask made_by_other_stencils(const Rule& rule, std::span<const NodeKey> keys) const;
     /// Replaces an edge by the one in whose middle one of its ends hangs.
     /// \return whether there is one
     bool extend(std::array<NodeKey, 2>& edge) const;
@@ -99,8 +99,8 @@ private:
     struct Made {
         const Stencil* stencil = nullptr;
         std::array<NodeKey, max_corners> parent{};
-        NodeKey parents = 0;     ///< a hash of their keys
-        bool otherwise = false;  ///< another element makes it by another stencil
+        NodeKey parents = 0;              ///< a hash of their keys
+        bool has_other_stencils = false;  ///< those of other elements
     };
     /// Stands for the number of a node that need() has begun.
     static constexpr std::uint32_t pending = ~std::uint32_t{0};
@@ -117,7 +117,7 @@ private:
 
     const Walk<Real>* walk_;
     KeyTable<NodeKey, Made> made_;
-    // Of find():
+    // Set while find() runs.
     const detail::HangingProbe* probe_ = nullptr;
     const HangingNodes* hanging_ = nullptr;
     std::shared_ptr<CrossingNodes> found_;

@@ -64,7 +64,7 @@ double PositionFunctions::value(std::size_t i, const Point& x) const {
     throw InvalidInput("the function of the slice has no finite value at " + text_of(x));
 }
 
-double PositionFunctions::stray(std::span<const NodeKey> nodes, bool placed) const {
+double PositionFunctions::distance_beyond_hull(std::span<const NodeKey> nodes, bool placed) const {
     if (bounded_) return 0;
     if (bounds_ == nullptr || !placed) return std::numeric_limits<double>::infinity();
     return nestgrid::detail::greatest_eta(*bounds_, nodes);
@@ -73,18 +73,18 @@ double PositionFunctions::stray(std::span<const NodeKey> nodes, bool placed) con
 /// An affine function is between its values at the corners within their hull. Others are within
 /// what they vary around the first corner.
 auto PositionFunctions::range(std::size_t component, std::span<const Point> corners,
-                              const Range& at_corners, double at_first, double stray) const
+                              const Range& at_corners, double at_first, double distance) const
     -> Range {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    if (stray == infinity) return {-infinity, infinity};
+    if (distance == infinity) return {-infinity, infinity};
     const LevelFunction& function = *functions_[component];
     if (function.affine()) {
-        const double beyond = function.variation(corners[0], stray);
+        const double beyond = function.variation(corners[0], distance);
         return {at_corners.least - beyond, at_corners.greatest + beyond};
     }
-    double radius = stray;
+    double radius = distance;
     for (const Point& x : corners.subspan(1)) {
-        radius = std::max(radius, norm(x - corners[0]) + stray);
+        radius = std::max(radius, norm(x - corners[0]) + distance);
     }
     const double variation = function.variation(corners[0], radius);
     return {std::min(at_corners.least, at_first - variation),

@@ -57,16 +57,16 @@ public:
     /// infinity where none is known.
     /// \param nodes the element's new nodes
     /// \param placed whether its corners are where the grid puts them, none is interpolated
-    double stray(std::span<const NodeKey> nodes, bool placed) const;
+    double distance_beyond_hull(std::span<const NodeKey> nodes, bool placed) const;
     struct Range {
         double least;
         double greatest;
     };
-    /// Bounds of a component at points no farther than `stray` from the convex hull of some
+    /// Bounds of a component at points no farther than `distance` from the convex hull of some
     /// corners. \param at_corners its least and greatest value there \param at_first its value at
     /// the first corner
     Range range(std::size_t component, std::span<const Point> corners, const Range& at_corners,
-                double at_first, double stray) const;
+                double at_first, double distance) const;
 
 private:
     double value(std::size_t i, const Point& x) const;

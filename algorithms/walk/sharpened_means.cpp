@@ -17,7 +17,7 @@ namespace nestgrid::detail {
 
 namespace {
 
-/// Of a corner in the value at the centre of gravity.
+/// The weight of a corner's value in the value at the centre of gravity.
 double part_of_corner(Shape shape, std::size_t corner) {
     if (shape == Shape::pyramid) return corner < 4 ? 3.0 / 16 : 1.0 / 4;
     return 1.0 / topology(shape).corners;

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace nestgrid {
+namespace nestgrid::engine {
 
 /// What to do with an element.
 enum class Visit : std::uint8_t {
@@ -13,4 +13,4 @@ enum class Visit : std::uint8_t {
     descend,  ///< enters the children
 };
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -186,7 +186,8 @@ void Walk<Real>::mark_crossing(const View& view, Split& split) const {
     if (fixed == 0) return;
     split.outside |= fixed;
     SplitKeys keys;
-    split.crossing = fixed_->crossing().made_otherwise(*split.rule, split_keys(view, split, keys));
+    split.crossing =
+        fixed_->crossing().made_by_other_stencils(*split.rule, split_keys(view, split, keys));
     split.constrained &= ~split.crossing;
 }
 

@@ -46,9 +46,9 @@ struct Needs {
 template <class Real>
 struct Frame {
     std::vector<Real> value;        ///< of the corners, then of the new nodes
-    std::vector<NodeKey> key;       ///< likewise
-    std::vector<Point> position;    ///< likewise
-    std::vector<Point> placed;      ///< likewise: where the grid has the nodes, S or not
+    std::vector<NodeKey> key;       ///< of the same nodes
+    std::vector<Point> position;    ///< of the same nodes, as S places them
+    std::vector<Point> placed;      ///< of the same nodes, where the grid has them
     std::vector<Real> child_value;  ///< at the corners of the child that the walk is at
     Family family;
     std::unique_ptr<ClosingSplit<Real>> closing;

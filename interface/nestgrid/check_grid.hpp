@@ -95,7 +95,7 @@ void note_operations(const std::vector<std::string>& grid, const std::vector<std
                      std::vector<std::string>& notes);
 }  // namespace detail
 
-/// Likewise of a grid and a field on it.
+/// The first violation of the contract by a grid and a field on it, or nothing.
 template <class Grid, class Field>
 std::optional<GridViolation> check_grid(const Grid& grid, const Field& field,
                                         const CheckOptions& options = {}) {

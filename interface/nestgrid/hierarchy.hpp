@@ -66,9 +66,9 @@ struct InnerBounds {
 struct Family {
     std::vector<Member> members;
     NodeMask split = 0;   ///< members that are split, one bit each
-    NodeMask leaves = 0;  ///< members that are not, likewise
-    NodeMask hidden = 0;  ///< members that are hidden wholly, likewise
-    /// Of the new nodes of all members that are split, and room behind them.
+    NodeMask leaves = 0;  ///< members that are not, one bit each
+    NodeMask hidden = 0;  ///< members that are hidden wholly, one bit each
+    /// Keys of the new nodes of all members that are split, and room behind them.
     std::vector<NodeKey> keys;
     std::size_t key_count = 0;       ///< number of keys that are set
     std::vector<InnerBounds> inner;  ///< one for each member, or none where Bounds say all
@@ -211,7 +211,7 @@ public:
     /// \return the nodes without a value
     virtual NodeMask enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                            Real* values, NodeMask wanted, Family& children) const = 0;
-    /// Values at new nodes alone, likewise.
+    /// Values at new nodes, as enter() gives them, without entering the element.
     virtual NodeMask new_values(Task* task, const Handle& element, const Rule& rule, NodeMask which,
                                 Real* values) const = 0;
     /// What the grid itself says of the corners and faces of an element. Each pointer may be null.
@@ -229,7 +229,7 @@ public:
 
     /// The degree of the field on a leaf, where it has degree; else 1.
     virtual int degree(Task* task, const Handle& leaf) const;
-    /// The field on a leaf at points of the reference element, likewise.
+    /// The field on a leaf at points of the reference element, where it has degree.
     /// \param out component c of point n at out[n * components + c]
     virtual void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
                           Real* out) const;
@@ -239,7 +239,7 @@ public:
 
     /// Calls function(row) for all star rows (optional.hpp), where facts().knows_stars.
     virtual void star_rows(const std::function<void(const StarRow&)>& function) const;
-    /// Values at the nodes first, first + stride, ..., likewise.
+    /// Values at the nodes first, first + stride, ..., where facts().knows_stars.
     virtual void row_values(NodeKey first, std::size_t stride, std::span<Real> out) const;
     /// The position of a node, where facts().knows_star_positions.
     virtual Point node_position(NodeKey node) const;
@@ -252,7 +252,7 @@ public:
                         int orientation, detail::ErasedBisectionVisitor<2, Real>& visitor) const;
     virtual void bisect(Task* task, const Handle& element, const Real* values, int level,
                         int orientation, detail::ErasedBisectionVisitor<3, Real>& visitor) const;
-    /// Does so for a function of position in the place of the field, where facts().bisects_means.
+    /// bisect() of a function of position in the place of the field, where facts().bisects_means.
     /// \param values of the function at the corners. At a new node it is the mean of its values at
     ///        the parents, or 0 where the mean is within `tolerance` of 0
     virtual void bisect_means(Task* task, const Handle& element, const double* values,

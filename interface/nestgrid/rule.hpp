@@ -109,10 +109,10 @@ struct Rule {
     /// Derived: of which child each new node is a corner. The first one of a child where it can be,
     /// else the last one: in sorted leaves these are found without a search.
     std::vector<ChildCorner> new_corner{};
-    /// Derived: likewise of each corner of the parent.
+    /// Derived: of which child each corner of the parent is a corner.
     std::vector<ChildCorner> old_corner{};
     std::vector<RuleEdge> edges{};  // derived: first those of the parent, as in its topology
-    std::vector<RuleFace> faces{};  // derived: likewise; none in two dimensions
+    std::vector<RuleFace> faces{};  // derived: those of the parent first; none in 2-d
     int steps = 1;  // derived: the longest chain of new nodes that are parents of each other
     std::uint8_t inside = no_new_node;  // derived: a new node in no face or edge of the parent, so
                                         // in no other element

@@ -41,7 +41,7 @@ struct ParentAxes {
     bool operator==(const ParentAxes&) const = default;
 };
 
-/// Those of a quadrilateral, a hexahedron or a prism that is divided in steps: first along the axes
+/// Nodes of a quadrilateral, a hexahedron or a prism that is divided in steps: along the axes
 /// in the first step, then every child along those in the second one, and so on. A node in a face
 /// is made by the last step that divides the face.
 /// \throw InvalidInput where two steps divide along one axis

@@ -21,6 +21,7 @@
 #include <nestgrid/detail/shape_functions.hpp>
 
 using namespace nestgrid;
+using namespace nestgrid::engine;
 
 namespace contour_test {
 
@@ -386,12 +387,12 @@ void expect_same_residual_in_boxes() {
                 x[i][d] = low[d] + ((i >> d & 1U) != 0 ? size[d] : 0);
             u[i] = number();
         }
-        ASSERT_TRUE(detail::is_parallelepiped(std::span<const Point, n>(x)));
+        ASSERT_TRUE(is_parallelepiped(std::span<const Point, n>(x)));
         const double in_box =
             affine_residual(std::span<const Point, n>(x), std::span<const double, n>(u));
         std::array<Point, n> off = x;
         off[n - 1][0] += 1e-11;
-        ASSERT_FALSE(detail::is_parallelepiped(std::span<const Point, n>(off)));
+        ASSERT_FALSE(is_parallelepiped(std::span<const Point, n>(off)));
         const double in_general =
             affine_residual(std::span<const Point, n>(off), std::span<const double, n>(u));
         EXPECT_NEAR(in_box, in_general, 1e-9);
@@ -419,10 +420,10 @@ TEST(AffineResidual, IsTheSameInShearedPrismsAndNearThem) {
         for (double& value : u) value = number();
         const std::span<const Point, 6> at(x);
         const std::span<const double, 6> values(u);
-        ASSERT_TRUE(detail::is_sheared_prism(at));
+        ASSERT_TRUE(is_sheared_prism(at));
         const double in_prism = affine_residual(at, values);
         const double z = std::exchange(x[5][2], x[5][2] + 1e-11);
-        ASSERT_FALSE(detail::is_sheared_prism(at));
+        ASSERT_FALSE(is_sheared_prism(at));
         EXPECT_NEAR(in_prism, affine_residual(at, values), 1e-9);
         EXPECT_GT(in_prism, 0);
         x[5][2] = z;

@@ -18,6 +18,7 @@
 #include "walked_in_patches.hpp"
 
 using namespace nestgrid;
+using namespace nestgrid::engine;
 using namespace nestgrid_test;
 
 namespace isosurface_bisections_test {

@@ -17,6 +17,7 @@
 #include <surfaces/wide_point.hpp>
 
 using namespace nestgrid;
+using namespace nestgrid::engine;
 
 namespace pack_test {
 

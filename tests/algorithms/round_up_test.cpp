@@ -11,6 +11,7 @@
 #include <nestgrid/algorithms/round_up.hpp>
 
 using namespace nestgrid;
+using namespace nestgrid::engine;
 
 namespace round_up_test {
 

@@ -434,7 +434,7 @@ struct Recorder final : engine::TaskVisitor<float> {
     explicit Recorder(int level) : finest{level} {}
 
     engine::Decision look(const View& view, const engine::Split&) override {
-        return {view.level >= finest ? Visit::stop : Visit::descend, 0};
+        return {view.level >= finest ? engine::Visit::stop : engine::Visit::descend, 0};
     }
     engine::Decision inspect(const View& view, const engine::Split& split) override {
         ++calls;

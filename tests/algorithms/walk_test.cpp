@@ -27,6 +27,7 @@ namespace walk_test {
 using View = engine::ElementView<double>;
 using Walk = engine::Walk<double>;
 using engine::Split;
+using engine::Visit;
 
 double bumps(const Point& x) {
     return std::sin(5 * x[0]) * std::cos(4 * x[1]) + std::sin(3 * x[2] + x[0]);

@@ -45,11 +45,11 @@ private:
     static const Triangles& triangles() {
         static const Triangles all = [] {
             Triangles result;
-            const auto& table = nestgrid::ContourTable::of(nestgrid::Shape::hexahedron);
+            const auto& table = nestgrid::engine::ContourTable::of(nestgrid::Shape::hexahedron);
             for (unsigned pattern = 0; pattern < 256; ++pattern) {
-                const nestgrid::Contour& contour = table.at(pattern, 0);
+                const nestgrid::engine::Contour& contour = table.at(pattern, 0);
                 for (std::size_t l = 0; l < contour.loop_count; ++l) {
-                    const nestgrid::ContourLoop& loop = contour.loop[l];
+                    const nestgrid::engine::ContourLoop& loop = contour.loop[l];
                     for (std::uint8_t i = 2; i < loop.count; ++i) {
                         result[pattern].push_back({loop.edge[0], loop.edge[i - 1U], loop.edge[i]});
                     }

@@ -26,35 +26,32 @@ namespace nestgrid {
 
 /// Whether the bisections of a grid and a field can be walked in patches (Hierarchy::bisect).
 template <class Grid, class Field>
-    requires(
-        KnowsBisections<Grid, Field>&& HasMaubachPatches<Grid>&& detail::components_of<Field>() ==
-            1 &&
-        detail::fits_handle<ElementOf<Grid>>)
+    requires(engine::KnowsBisections<Grid, Field>&& engine::HasMaubachPatches<Grid>&&
+                     detail::components_of<Field>() == 1 &&
+             detail::fits_handle<ElementOf<Grid>>)
 bool knows_patches(const Grid&, const Field&, const HierarchyFacts&) { return true; }
 
 /// Walks the bisections below an element in patches.
 template <class Grid, class Field>
-    requires(
-        KnowsBisections<Grid, Field>&& HasMaubachPatches<Grid>&& detail::components_of<Field>() ==
-        1)
+    requires(engine::KnowsBisections<Grid, Field>&& engine::HasMaubachPatches<Grid>&&
+                 detail::components_of<Field>() == 1)
 void bisect_patches(
     const Grid& grid, const Field& field, Context<Grid>&, const ElementOf<Grid>& e,
     const typename Field::value_type* values, int level, int orientation,
     detail::ErasedBisectionVisitor<Grid::dimension, typename Field::value_type>& visitor) {
-    detail::walk_for(visitor, grid, field, e, values, level, orientation);
+    engine::walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
 /// Walks them for a function of position (Hierarchy::bisect_means).
 template <class Grid, class Field>
-    requires(
-        KnowsBisections<Grid, Field>&& HasMaubachPatches<Grid>&& detail::components_of<Field>() ==
-            1 &&
-        Grid::dimension == 3)
+    requires(engine::KnowsBisections<Grid, Field>&& engine::HasMaubachPatches<Grid>&&
+                     detail::components_of<Field>() == 1 &&
+             Grid::dimension == 3)
 void bisect_patches_of_means(const Grid& grid, const Field& field, const ElementOf<Grid>& e,
                              const double* values, double tolerance, int level, int orientation,
                              detail::ErasedBisectionVisitor<3, double>& visitor) {
-    const CarriedField<Grid, Field> carried(field);
-    detail::walk_for(visitor, grid, MeanValues<Grid>(tolerance, carried), e, values, level,
+    const engine::CarriedField<Grid, Field> carried(field);
+    engine::walk_for(visitor, grid, engine::MeanValues<Grid>(tolerance, carried), e, values, level,
                      orientation);
 }
 

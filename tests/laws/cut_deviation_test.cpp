@@ -157,13 +157,13 @@ public:
     bool sees_hidden() const override { return true; }
     engine::Decision inspect(const View& view, const engine::Split& split) override {
         if (view.level <= stop_level_) stop_level_ = none_;
-        if (split.rule == nullptr) return {Visit::stop, 0};
+        if (split.rule == nullptr) return {engine::Visit::stop, 0};
         if (stop_level_ == none_) {
             const auto decision = question_.ask(walk_, *criterion_, view, split);
-            if (decision.visit != Visit::stop) return decision;
+            if (decision.visit != engine::Visit::stop) return decision;
             stop_level_ = view.level;
         }
-        return {Visit::descend, split.rule->all()};
+        return {engine::Visit::descend, split.rule->all()};
     }
     void extract(const View& view) override {
         JudgedLeaf leaf{view.shape, {}, {}};

@@ -131,17 +131,17 @@ public:
         if (view.level <= stop_level_) stop_level_ = none_;
         if (stop_level_ == none_) {
             const engine::Decision decision = split.rule == nullptr
-                                                  ? engine::Decision{Visit::stop, 0}
+                                                  ? engine::Decision{engine::Visit::stop, 0}
                                                   : question_.ask(walk_, *criterion_, view, split);
-            if (decision.visit != Visit::stop) {
+            if (decision.visit != engine::Visit::stop) {
                 interpolated_corners_ += view.interpolated != 0 ? 1U : 0U;
                 interpolated_ = decision.interpolated;
                 return decision;
             }
             stop(view);
         }
-        if (split.rule == nullptr) return {Visit::stop, 0};
-        return {Visit::descend, split.rule->all()};
+        if (split.rule == nullptr) return {engine::Visit::stop, 0};
+        return {engine::Visit::descend, split.rule->all()};
     }
     void extract(const View&) override {}
     void entered(const View& view, const engine::Split& split, const double* value) override {

@@ -1,5 +1,6 @@
 # The contract stays short and apart from the engine: at most 12 headers and 2,500 lines, of which
-# none speaks of isovalues or includes an algorithm. No header that is installed includes the engine.
+# none speaks of isovalues or includes an algorithm. No header that is installed includes the engine,
+# and no header of the engine declares anything where users look for names.
 cmake_policy(SET CMP0007 NEW)
 file(GLOB headers ${source}/interface/nestgrid/*.h ${source}/interface/nestgrid/*.hpp)
 file(GLOB details ${source}/interface/nestgrid/detail/*.hpp)
@@ -33,5 +34,18 @@ foreach(header IN LISTS headers details installed)
   if(text MATCHES "#include <(${engine})/")
     message(FATAL_ERROR "${header} includes ${CMAKE_MATCH_1}/")
   endif()
+endforeach()
+
+# What is plain nestgrid:: is for users. A header of the engine may name such types beforehand.
+string(REPLACE "|" ";" folders "${engine}")
+foreach(folder IN LISTS folders)
+  file(GLOB_RECURSE headers ${source}/algorithms/${folder}/*.hpp)
+  foreach(header IN LISTS headers)
+    file(READ ${header} text)
+    string(REGEX REPLACE "namespace nestgrid {\n((class|struct) [A-Za-z]+ *;\n|\n)+}" "" text "${text}")
+    if(text MATCHES "namespace nestgrid {")
+      message(FATAL_ERROR "${header} declares in nestgrid::, not in nestgrid::engine")
+    endif()
+  endforeach()
 endforeach()
 message(STATUS "${count} headers, ${lines} lines")

@@ -111,7 +111,7 @@ void append_rows(const nestgrid::ProbeResult& result, const std::vector<Point>& 
     }
 }
 
-/// The same rows in a report.
+/// Adds to a report the rows that append_rows() writes.
 void add_rows(const nestgrid::ProbeResult& result, const std::vector<Point>& points,
               const std::optional<double>& time, const std::string& name, Report& report) {
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -17,7 +17,7 @@ double quantile(Sorted sorted, double part) {
 
 double median(Sorted sorted) { return quantile(sorted, 0.5); }
 
-/// Those of sorted values that lie above one.
+/// The values above a number, of sorted ones.
 Sorted above(Sorted sorted, double value) {
     return {std::ranges::upper_bound(sorted, value), sorted.end()};
 }

@@ -76,7 +76,7 @@ public:
     void for_each(const std::function<void(const Moment&)>& function) const;
     /// The least and the greatest value of all frames. Makes their prerolls, when first asked for.
     const std::array<double, 2>& range() const;
-    /// Of the prerolls and the indicators made so far.
+    /// The cost of the prerolls and the indicators made so far.
     const PrerollCost& preroll_cost() const { return cost_; }
 
 private:

@@ -111,7 +111,7 @@ struct DrawnField {
     int dimension = 3;
     std::size_t nodes = 0;
     std::size_t leaf_elements = 0;  ///< of the finest grid
-    // Of the colours, or where there are none of the data.
+    // The range of the colours, or of the data where there are no colours.
     double least = std::numeric_limits<double>::infinity();
     double greatest = -std::numeric_limits<double>::infinity();
     /// Why the isosurface is empty, where that is because of its value.

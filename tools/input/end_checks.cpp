@@ -77,7 +77,7 @@ void check_xml_end(const fs::path& path) {
 
 NiftiStart checked_nifti_start(const fs::path& path) {
     const NiftiStart start = nifti_start(path);
-    // Those of the standard but for bits and for numbers of 128 bits.
+    // The types of the standard, but for bits and for numbers of 128 bits.
     constexpr std::array known{2, 4, 8, 16, 32, 64, 128, 256, 512, 768, 1024, 1280, 1792, 2304};
     if (std::ranges::find(known, start.type) == known.end()) {
         throw IoError(path.string() + " has samples of the type " + std::to_string(start.type) +

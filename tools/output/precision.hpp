@@ -8,7 +8,7 @@
 struct SinglePrecision {
     double moved = 0;          ///< the greatest distance that a point moves
     double shortest_edge = 0;  ///< of its cells, as long as they are; infinite without cells
-    double mean_edge = 0;      ///< likewise
+    double mean_edge = 0;      ///< the mean length of these edges
 
     /// Whether no point moves by more than a thousandth of the shortest edge.
     bool keeps_edges() const { return 1000 * moved <= shortest_edge; }

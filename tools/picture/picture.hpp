@@ -55,7 +55,7 @@ struct PictureStyle {
     bool perspective = false;
     ColourMap colours{};
     std::optional<ColourRange> range{};  ///< in the place of the panels'
-    /// Of the veil where there is one, else of the surface; empty: the veil is translucent.
+    /// That of the veil if there is one, else of the surface; empty: the veil is translucent.
     std::optional<double> opacity{};
     std::string title{};
     bool axes = false;

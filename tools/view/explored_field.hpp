@@ -53,7 +53,7 @@ struct ExploredField : FrameField {
     std::string length_unit{};    ///< such as mm; empty where it is not known
     std::string note{};           ///< a sentence on what of the file is left out; mostly empty
     std::size_t samples = 0;      ///< of a frame; 0 where the field has nodes
-    /// Of the values of all frames, where they are known without the nodes beyond the data.
+    /// The range of the values of all frames, if known without the nodes beyond the data.
     std::optional<std::array<double, 2>> range{};
     std::optional<std::array<double, 2>> usual_range{};  ///< of nearly all, where few lie far off
     Histogram histogram{};                               ///< of the first frame

@@ -14,11 +14,12 @@ void bisect_patches(const LatticeBisection<dim>& grid,
                     const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext&,
                     const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
                     int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) {
-    detail::walk_for(visitor, grid, field, e, values, level, orientation);
+    engine::walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
 /// The walk of bisect_patches_of_means(), compiled once for all samples.
-void walk_means(const LatticeBisection<3>& grid, const MeanValues<LatticeBisection<3>>& field,
+void walk_means(const LatticeBisection<3>& grid,
+                const engine::MeanValues<LatticeBisection<3>>& field,
                 const LatticeBisection<3>::Element& e, const double* values, int level,
                 int orientation, detail::ErasedBisectionVisitor<3, double>& visitor);
 
@@ -28,8 +29,8 @@ void bisect_patches_of_means(const LatticeBisection<3>& grid,
                              const LatticeBisection<3>::Element& e, const double* values,
                              double tolerance, int level, int orientation,
                              detail::ErasedBisectionVisitor<3, double>& visitor) {
-    const CarriedField<LatticeBisection<3>, LatticeField<LatticeBisection<3>, Sample>> carried(
-        field);
+    const engine::CarriedField<LatticeBisection<3>, LatticeField<LatticeBisection<3>, Sample>>
+        carried(field);
     walk_means(grid, {tolerance, carried}, e, values, level, orientation, visitor);
 }
 

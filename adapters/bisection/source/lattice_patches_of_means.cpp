@@ -4,10 +4,11 @@
 
 namespace nestgrid {
 
-void walk_means(const LatticeBisection<3>& grid, const MeanValues<LatticeBisection<3>>& field,
+void walk_means(const LatticeBisection<3>& grid,
+                const engine::MeanValues<LatticeBisection<3>>& field,
                 const LatticeBisection<3>::Element& e, const double* values, int level,
                 int orientation, detail::ErasedBisectionVisitor<3, double>& visitor) {
-    detail::walk_for(visitor, grid, field, e, values, level, orientation);
+    engine::walk_for(visitor, grid, field, e, values, level, orientation);
 }
 
 }  // namespace nestgrid

@@ -132,7 +132,7 @@ struct LoadedField {
 /// \throw IoError where the file cannot be read, is damaged, or holds no hierarchy
 LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array,
                            const Call& call);
-/// Likewise of a plotfile of AMReX, a folder, which is mapped.
+/// Loads a plotfile of AMReX, a folder whose files are mapped. Parameters as above.
 LoadedField load_plotfile(const std::filesystem::path& path, const std::string& array,
                           const Call& call);
 /// The place of the field with a name; an empty name stands for the only one.

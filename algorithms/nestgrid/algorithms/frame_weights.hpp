@@ -23,7 +23,7 @@ namespace nestgrid {
 ///        the first and the last of them
 std::vector<float> linear_weights(std::span<const double> times, double t);
 
-/// Likewise of cubic polynomials through the frames, whose slope at a frame is that of the line
+/// Weights of cubic polynomials through the frames, whose slope at a frame is that of the line
 /// through its neighbours (Catmull and Rom); at the first and the last frame, that of the line to
 /// the only neighbour. At most four are not 0; those of the outer two are negative.
 std::vector<float> catmull_rom_weights(std::span<const double> times, double t);

@@ -46,11 +46,11 @@ public:
     /// \param field shared where it is to be kept alive. It is not asked by work that has a field
     ///        of its own (Work::same_field)
     Prerolls(FieldOnGrid field);
-    /// Of what a FieldOnGrid is made of.
+    /// Prerolls of a FieldOnGrid made of these arguments.
     template <class... Field>
         requires std::constructible_from<FieldOnGrid, Field...> Prerolls(Field&&... field)
             : Prerolls(FieldOnGrid(std::forward<Field>(field)...)) {}
-        /// Those of a field between frames.
+        /// Prerolls of a field between frames.
         /// \param field sum of weight * frame (between.hpp)
         /// \param frames of one grid, shared
         /// \throw InvalidInput where there is no frame, or not one finite weight for each
@@ -103,7 +103,7 @@ public:
         /// Drops what is kept: the data have changed. Work that goes on keeps what it uses. Frames
         /// keep theirs.
         void clear();
-        /// Of what is kept, without the frames.
+        /// Bytes of what is kept, without those of the frames.
         std::size_t memory_bytes() const;
 
     private:

@@ -40,8 +40,8 @@ struct Projection {
     std::optional<double> threshold{};
     /// The largest number of triangles, beside which there is no threshold; 0 asks for none.
     std::uint64_t max_triangles = 0;
-    /// Of indicators(); or "error", with which the threshold is the error that is kept: on level
-    /// sets error_indicator(), else deviations.
+    /// A name in indicators(); or "error", with which the threshold is the error that is kept: on
+    /// level sets error_indicator(), else deviations.
     std::string indicator = "offset";
     /// Nodes move from their mean to their value between the threshold and this many times it
     /// (blended.hpp), at least 1.

@@ -55,7 +55,7 @@ private:
     void prepare(const Hierarchy<Real>& hierarchy, const Executor& executor);
     std::uint16_t& place_of(NodeKey name, bool is_node);
 
-    // Of divided elements, by the new node that names them where keys are dense, else by a name.
+    // Bounds of divided elements, by the new node that names them if keys are dense, or by a name.
     std::unique_ptr<std::uint16_t[]> dense_;
     KeyTable<NodeKey, std::uint16_t> sparse_;
     std::size_t node_count_ = 0;

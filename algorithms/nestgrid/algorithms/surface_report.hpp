@@ -25,7 +25,7 @@ struct SurfaceReport {
     std::size_t components = 0;
     long long euler = 0;  ///< vertices - edges + triangles
     double area = 0;
-    /// Of the area, what lies behind its normals: a third of a triangle for each of its corners
+    /// The part of the area behind its normals: a third of a triangle for each of its corners
     /// whose normal points to the other side. 0 where the surface has no normals.
     double area_behind = 0;
     double volume = 0;  ///< enclosed, positive for U >= C inside; 0 unless closed

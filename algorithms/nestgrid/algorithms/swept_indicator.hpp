@@ -28,7 +28,7 @@ struct MeasuredSplit {
     const Rule& rule;
     int level;                         ///< of the element that is split
     std::span<const Point> positions;  ///< of the corners and, behind them, of the new nodes
-    std::span<const double> values;    ///< likewise: component c of node k at k * components + c
+    std::span<const double> values;    ///< component c of node k at k * components + c
     std::span<const double> means;     ///< sum omega U at the new nodes, as the projection takes it
     std::size_t components;
 

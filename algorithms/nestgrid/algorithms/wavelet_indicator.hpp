@@ -30,7 +30,7 @@ struct WaveletOptions {
     Spread spread{};
 };
 
-/// Of component 0.
+/// The indicator of component 0.
 /// \throw InvalidInput where a value of the field is not finite, and for a spread as in
 ///        measured_indicator()
 SweptIndicator wavelet_indicator(const FieldOnGrid& field, const WaveletOptions& options = {});

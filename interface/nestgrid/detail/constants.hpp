@@ -27,7 +27,7 @@ constexpr std::size_t child_capacity() {
     }
 }
 
-/// Of all elements, where it is known when the grid is compiled; else Shape::point.
+/// The shape of all elements, if it is known when the grid is compiled; else Shape::point.
 template <class Grid>
 constexpr Shape only_shape() {
     constexpr bool simplices = corner_capacity<Grid>() == std::size_t{Grid::dimension} + 1;

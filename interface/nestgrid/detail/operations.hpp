@@ -130,7 +130,7 @@ concept ReturnsAs = std::is_void_v<Result> || std::same_as<T, Result> ||
         }                                                                      \
     }
 
-/// Likewise; and names_name<Model, Result, Ctx, Args...>: Model has a member of that name.
+/// That, and names_name<Model, Result, Ctx, Args...>: Model has a member of that name.
 /// fits_name<...>: it has one that takes Args, perhaps Ctx& after them, and returns Result.
 #define NESTGRID_OPTIONAL_OPERATION(whose, feature, name, signature, ...) \
     NESTGRID_OPERATION(name)                                              \
@@ -342,7 +342,7 @@ std::vector<std::string> offered_operations(const Grid& grid) {
     return names;
 }
 
-/// Likewise of a field on a grid.
+/// Names of the optional operations and constants that a field on a grid offers.
 template <class Grid, class Field>
 std::vector<std::string> offered_field_operations(const Field& field) {
     return detail::OperationsOfField<Field, Grid>::names(field);

@@ -61,7 +61,7 @@ public:
     ///
     /// \throw ViolationFound
     void finish_hidden() const;
-    /// Of a node that may be made in two ways unless it hangs.
+    /// Reports a node that may be made in two ways unless it hangs.
     void fail_if_hanging(NodeKey place, Law law, const std::string& sentence);
     /// Throws what waits for a node that turns out to hang.
     ///

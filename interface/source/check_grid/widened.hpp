@@ -73,7 +73,7 @@ private:
         return missing;
     }
 
-    /// Likewise at new nodes, behind the values at the corners of a split, which are given.
+    /// widen() at new nodes, behind the values at the corners of a split, which are given.
     template <class Ask>
     NodeMask widen_split(const Rule& rule, double* split, Ask&& ask) const {
         const auto components = static_cast<std::size_t>(facts().components);

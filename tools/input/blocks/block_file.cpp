@@ -141,7 +141,7 @@ void require_one_grid(const KeptBlocks<dim>& kept, const Paths& paths) {
     }
 }
 
-/// Those of the files, where all of them tell.
+/// The times that the files tell, or times_of_files() where one of them tells none.
 std::vector<double> times_in(const std::vector<BlockFile>& files) {
     std::vector<double> times;
     for (const BlockFile& file : files) {

@@ -237,7 +237,7 @@ std::size_t count_missing(const FileSamples& file, const std::string& type, cons
     return missing;
 }
 
-/// Does so for samples in a file, of which few are looked at at a time, as memory may hold no more.
+/// Counts them in a file, and looks at few samples at a time, as memory may hold no more.
 std::size_t count_missing(const FileSamples& file, const NumbersInFile& at, std::size_t count) {
     const std::size_t size = bytes_of(file.type);
     constexpr std::size_t step = std::size_t{1} << 24U;

@@ -45,7 +45,7 @@ struct VolumeDescription {
     /// Where the samples stand in a file, whose path is in the parcel in their place; -1: nowhere.
     std::int64_t mapped_from = -1;
 
-    /// Of one frame.
+    /// The number of samples of one frame.
     std::size_t sample_count() const;
 };
 

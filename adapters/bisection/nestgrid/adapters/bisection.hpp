@@ -88,7 +88,7 @@ public:
     }
     NESTGRID_INLINE const Rule& rule(std::size_t number) const { return *rules_[number + 1]; }
     NESTGRID_INLINE bool halved(Node a, Node b) const { return ((a ^ b) & unit_) == 0; }
-    // Of a Pack, too.
+    // Nodes may be packs of nodes, too.
     template <class Nodes>
     NESTGRID_INLINE Nodes middle(const Nodes& a, const Nodes& b) const {
         return (a + b) >> 1;
@@ -204,7 +204,7 @@ void bisect_patches(const LatticeBisection<dim>& grid,
                     const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext& context,
                     const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
                     int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
-/// Hierarchy::bisect_means() of a lattice, likewise.
+/// Hierarchy::bisect_means() of a lattice; compiled for the types above.
 template <WalkedInPatches Sample>
 void bisect_patches_of_means(const LatticeBisection<3>& grid,
                              const LatticeField<LatticeBisection<3>, Sample>& field,
@@ -261,7 +261,7 @@ auto LatticeBisection<dim>::coarse(std::size_t i) const -> CoarseElement<Element
 
 /// Around a node lie: centres of finer cells, half a step away in every direction; where two
 /// directions are odd or three, the centres of its edges or faces, a step away in one of those.
-/// Those of the edges of a cell are covered through its faces', all in a cell through its centre.
+/// Centres of edges of a cell are covered through its faces, and all in a cell through its centre.
 template <int dim>
 template <class Function>
 void LatticeBisection<dim>::star_rows_of_plane(std::uint32_t step, unsigned odd,

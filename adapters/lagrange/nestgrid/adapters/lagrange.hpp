@@ -118,7 +118,7 @@ public:
     LagrangeField(const Grid& grid, std::span<const double> values)
         : grid_{&grid}, values_{values} {}
 
-    /// Those of the cell: where cells disagree, a node has none.
+    /// Values of the cell's own polynomial at its corners: cells may disagree about a node.
     NodeMask coarse_values(std::size_t i, std::span<double> out) const {
         const auto cell = static_cast<std::uint32_t>(i);
         const auto points = grid_->points(cell);

@@ -98,8 +98,8 @@ inline int triangle_point(std::array<int, 3> b, int p) {
 /// A node with these barycentric coordinates, those of x, y, z and the first corner, of a
 /// tetrahedron.
 inline int tetrahedron_point(std::array<int, 4> b, int p) {
-    // Which coordinates are least on an edge, which one grows along it; on a face likewise, and
-    // which ones are the coordinates of its triangle.
+    // Which coordinates are least on an edge, which one grows along it. Which are least on a face,
+    // and which ones are the coordinates of its triangle.
     constexpr std::array<std::array<std::size_t, 3>, 6> edges{
         {{1, 2, 0}, {2, 3, 1}, {0, 2, 3}, {0, 1, 2}, {1, 3, 2}, {0, 3, 2}}};
     constexpr std::array<std::array<std::size_t, 4>, 4> faces{

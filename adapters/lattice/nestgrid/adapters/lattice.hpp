@@ -130,7 +130,7 @@ public:
         for (std::size_t d = 0; d < size_; ++d) low += Place{k >> d & 1U} << (bits_ * d + level);
         return low;
     }
-    /// Those of all its corners; the same bits as position().
+    /// Positions of all corners of that cube, with the bits of position().
     void positions_of_box(Place low, unsigned level, std::span<Point> out) const {
         constexpr std::size_t corners = std::size_t{1} << size_;
         if (!aligned_) {

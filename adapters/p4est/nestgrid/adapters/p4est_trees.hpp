@@ -137,7 +137,7 @@ private:
 
     struct Image {
         std::uint32_t tree;
-        /// Of each axis there: an axis here, 3 more where it runs backwards, low_ or high_.
+        /// By axis of that tree: an axis of this one, plus 3 if it runs backwards; or low_, high_.
         std::array<std::uint8_t, static_cast<std::size_t>(dim)> from;
     };
 

@@ -79,7 +79,7 @@ private:
         check_layers(tree, {f[0], f[1], p, q});
         check_layers(tree, {p, q, f[2], f[3]});
     }
-    /// The same with layers and columns exchanged.
+    /// check_layers() with layers and columns exchanged.
     template <class Tree>
     static void check_columns(const Tree& tree, const Face& f) {
         const std::uint32_t p = tree.midpoint(f[0], f[1]);

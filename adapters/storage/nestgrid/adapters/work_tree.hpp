@@ -14,6 +14,7 @@
 
 #include <limits>
 
+#include <nestgrid/adapters/edge_changes.hpp>
 #include <nestgrid/adapters/pattern.hpp>
 #include <nestgrid/detail/key_table.hpp>
 
@@ -66,7 +67,7 @@ public:
         position.resize(count);
         parents.resize(count, {no_node, no_node, no_node, no_node});
         state_.resize(count, 0);
-        touched_.resize(count, 0);
+        changes_.set_node_count(count);
     }
 
     /// Makes room for about as many nodes and elements.
@@ -126,11 +127,8 @@ public:
 private:
     static constexpr std::uint8_t active_ = 1, half_ = 2, known_ = 4;
     static constexpr std::uint8_t end_ = 8;  // of a split edge
-    struct Present {};
 
-    static std::uint64_t pair(std::uint32_t a, std::uint32_t b) {
-        return a < b ? std::uint64_t{a} << 32U | b : std::uint64_t{b} << 32U | a;
-    }
+    static std::uint64_t pair(std::uint32_t a, std::uint32_t b) { return detail::edge_name(a, b); }
     static std::uint64_t face_key(const std::array<std::uint32_t, 4>& m) {
         return std::min(pair(m[0], m[1]), pair(m[2], m[3]));
     }
@@ -150,21 +148,13 @@ private:
     std::uint32_t free_node();
     std::uint32_t attach(std::uint32_t leaf, std::uint16_t rule_number, const Local& local);
     void activate(std::uint32_t node);
-    void note_change(std::uint32_t a, std::uint32_t b) {
-        changing_.insert(pair(a, b), {});
-        touched_[a] = touched_[b] = sweep_ + 1;
-    }
-    bool changed(const Element& e) const;
     template <class Closure>
     void close_open(Closure& closure);
 
     KeyTable<std::uint64_t, std::uint32_t> by_key_;
     std::vector<std::uint8_t> state_;
     std::uint32_t next_free_ = 0;
-    bool noting_ = false;
-    KeyTable<std::uint64_t, Present> changed_, changing_;  // edges, in this sweep and for the next
-    std::vector<std::uint32_t> touched_;  // last sweep for which an edge at a node has changed
-    std::uint32_t sweep_ = 0;
+    detail::EdgeChanges changes_;
 };
 
 template <int corners>
@@ -239,7 +229,7 @@ std::uint32_t WorkTree<corners>::attach(std::uint32_t leaf, std::uint16_t rule_n
     if (next.level == 0xFF) throw GridError("more than 254 levels");
     for (std::size_t k = 0; k < stored.nodes.size(); ++k) {
         new_nodes.push_back(local[first + k]);
-        if (noting_ && !stored.temporary) activate(local[first + k]);
+        if (changes_.has_begun() && !stored.temporary) activate(local[first + k]);
     }
     for (const Child& c : r.children) {
         next.shape = c.shape;
@@ -287,12 +277,9 @@ void WorkTree<corners>::activate(std::uint32_t node) {
     state_[node] |= active_;
     const auto& ends = parents[node];
     if (ends[0] == no_node || ends[2] != no_node) return;  // no midpoint of an edge
-    const auto note = [&](std::uint32_t a, std::uint32_t b) {
-        if (noting_) note_change(a, b);
-    };
     state_[ends[0]] |= end_;
     state_[ends[1]] |= end_;
-    note(ends[0], ends[1]);
+    changes_.note(ends[0], ends[1]);
     for (const std::size_t side : {0U, 1U}) {
         const std::uint32_t end = ends[side];
         const std::uint32_t other = ends[1 - side];
@@ -300,11 +287,11 @@ void WorkTree<corners>::activate(std::uint32_t node) {
         if (above[0] == no_node) continue;
         if (above[2] != no_node) {  // from the centre of a face: its edges
             for (const std::uint32_t m : above) {
-                if (parents[m][1] != no_node) note(parents[m][0], parents[m][1]);
+                if (parents[m][1] != no_node) changes_.note(parents[m][0], parents[m][1]);
             }
             continue;
         }
-        note(above[0], above[1]);
+        changes_.note(above[0], above[1]);
         if (above[0] == other || above[1] == other) state_[end] |= half_;
     }
 }
@@ -315,24 +302,7 @@ void WorkTree<corners>::activate() {
         if (!e.alive || e.rule == 0 || table.rule(e.rule).temporary) continue;
         for (const std::uint32_t node : nodes(e)) activate(node);
     }
-    noting_ = true;
-}
-
-template <int corners>
-bool WorkTree<corners>::changed(const Element& e) const {
-    const Topology& t = topology(e.shape);
-    int touched = 0;
-    for (std::size_t i = 0; i < t.corners; ++i) touched += touched_[e.corner[i]] >= sweep_ ? 1 : 0;
-    if (touched < 2) return false;
-    for (std::size_t i = 0; i < t.edges; ++i) {
-        const std::uint32_t a = e.corner[t.edge[i][0]];
-        const std::uint32_t b = e.corner[t.edge[i][1]];
-        if (touched_[a] >= sweep_ && touched_[b] >= sweep_ &&
-            changed_.find(pair(a, b)) != nullptr) {
-            return true;
-        }
-    }
-    return false;
+    changes_.begin();
 }
 
 template <int corners>
@@ -355,17 +325,15 @@ template <int corners>
 template <class Closure>
 void WorkTree<corners>::close(Closure&& closure) {
     close_open(closure);
-    while (changing_.size() > 0) {
-        changed_ = std::exchange(changing_, {});
-        ++sweep_;
+    while (changes_.begin_sweep()) {
         const auto count = static_cast<std::uint32_t>(elements.size());
         for (std::uint32_t leaf = 0; leaf < count; ++leaf) {
-            if (!is_leaf(elements[leaf]) || !changed(elements[leaf])) continue;
+            const Element& e = elements[leaf];
+            if (!is_leaf(e) || !changes_.any_of(e.shape, e.corner)) continue;
             open.push_back(leaf);
             close_open(closure);
         }
     }
-    changed_ = {};
 }
 
 }  // namespace nestgrid

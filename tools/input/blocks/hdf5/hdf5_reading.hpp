@@ -41,7 +41,7 @@ public:
     /// The texts of an attribute.
     std::vector<std::string> texts(const std::string& attribute) const;
 
-    // Of a data set:
+    // For data sets alone:
     std::vector<hsize_t> shape() const;
     bool is_double() const;  ///< not of floats
     /// All of its integers, those of compounds one behind the other.
