@@ -36,8 +36,9 @@ void refuse_slice_distance(const Projection& projection) {
     }
 }
 
-void check_one_walk(const Prerolls& prerolls, const Projection& projection, const char* drawing) {
-    check_first(prerolls, projection, drawing, [&] {
+void check_one_walk(const Prerolls& prerolls, const Projection& projection, const Work& work,
+                    const char* drawing) {
+    check_first(prerolls, projection, work, drawing, [&] {
         refuse_collapse(projection, drawing);
         refuse_budget(projection, drawing);
         refuse_distance(projection);

@@ -26,15 +26,16 @@ void refuse_slice_distance(const Projection& projection);
 /// alike.
 /// \param refuse throws for what this drawing does not do
 template <class Refuse>
-void check_first(const Prerolls& prerolls, const Projection& projection, const char* drawing,
-                 const Refuse& refuse) {
-    together(prerolls.field().facts().shared, drawing, [&] {
+void check_first(const Prerolls& prerolls, const Projection& projection, const Work& work,
+                 const char* drawing, const Refuse& refuse) {
+    together(work.on(prerolls.field()).facts().shared, drawing, [&] {
         projection.check();
         refuse();
     });
 }
 /// The same for drawings of one walk, which have neither a drawing of their own nor several.
-void check_one_walk(const Prerolls& prerolls, const Projection& projection, const char* drawing);
+void check_one_walk(const Prerolls& prerolls, const Projection& projection, const Work& work,
+                    const char* drawing);
 
 /// The projection with its threshold, where it draws everything by saying nothing.
 Projection told(Projection projection);
