@@ -11,8 +11,8 @@
 #include <utility>
 
 #include <distances/box_tree.hpp>
-#include <levels/bfloat16_search.hpp>
-#include <levels/draw.hpp>
+#include <drawing/bfloat16_search.hpp>
+#include <level_sets/draw.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>

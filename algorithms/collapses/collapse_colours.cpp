@@ -13,7 +13,7 @@
 
 #include <collapses/collapse_rounds.hpp>
 #include <collapses/judge_triangles.hpp>
-#include <levels/draw.hpp>
+#include <drawing/requirements.hpp>
 #include <surfaces/require_simplices.hpp>
 
 namespace nestgrid {

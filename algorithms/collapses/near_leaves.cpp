@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include <levels/draw.hpp>
+#include <drawing/requirements.hpp>
 #include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/error.hpp>
 #include <probes/inverse_map.hpp>

@@ -6,16 +6,18 @@
 
 namespace nestgrid::engine {
 
-void TransitionContours::append(const TransitionContours& other, std::span<const Index> numbers) {
-    std::vector<KeyPair> names(other.cuts_.size());
-    other.vertex_of_.for_each([&](const KeyPair& name, Index v) { names[v] = name; });
-    std::vector<Index> named(names.size());
-    for (std::size_t v = 0; v < names.size(); ++v) {
-        named[v] = vertex(names[v], [&] { return other.cut(static_cast<Index>(v)); });
+auto TransitionContours::append(const TransitionContours& other, std::vector<Index> numbers)
+    -> std::vector<Index> {
+    if (by_names_) {
+        std::vector<KeyPair> names(other.cuts_.size());
+        other.vertex_of_.for_each([&](const KeyPair& name, Index v) { names[v] = name; });
+        numbers.resize(names.size());
+        for (std::size_t v = 0; v < names.size(); ++v) {
+            numbers[v] = vertex(names[v], [&] { return other.cut(static_cast<Index>(v)); });
+        }
     }
-    const std::span<const Index> number = by_names_ ? std::span<const Index>(named) : numbers;
     for (const Segment& s : other.segments_) {
-        segments_.push_back({s.face, number[s.from], number[s.to]});
+        segments_.push_back({s.face, numbers[s.from], numbers[s.to]});
     }
     other.split_of_.for_each([&](NodeKey face, const Split& s) {
         note_split(face, s.by, other.element(s.owner), s.owner.shape, s.owner.level);
@@ -24,6 +26,7 @@ void TransitionContours::append(const TransitionContours& other, std::span<const
         [&](NodeKey face, const Owner&) { conflicts_.insert(face, split_of_.find(face)->owner); });
     other.shared_parts_.for_each(
         [&](NodeKey part, const Corners& c) { shared_parts_.insert(part, c); });
+    return numbers;
 }
 
 void TransitionContours::finish(const std::function<Point(Index)>& position) {
@@ -48,12 +51,14 @@ void TransitionContours::group_segments() {
     for (const Index f : face_of_) ++first_on_[f + 1U];
     std::partial_sum(first_on_.begin(), first_on_.end(), first_on_.begin());
     place_.assign(first_on_.begin(), first_on_.end());
-    grouped_.resize(segments_.size());
-    for (std::size_t i = 0; i < segments_.size(); ++i) {
-        grouped_[place_[face_of_[i]]++] = segments_[i];
-    }
-    segments_.swap(grouped_);
     for (std::size_t f = 0; f + 1 < first_on_.size(); ++f) {
+        for (Index& i = place_[f]; i < first_on_[f + 1]; ++i) {
+            while (face_of_[i] != f) {
+                const Index to = place_[face_of_[i]]++;
+                std::swap(segments_[i], segments_[to]);
+                std::swap(face_of_[i], face_of_[to]);
+            }
+        }
         if (first_on_[f + 1] - first_on_[f] > few) sort_segments(f);
     }
 }

@@ -48,8 +48,8 @@ public:
         owners_ = std::move(elements);
     }
 
-    /// Chooses how vertices are known: by their names, which vertex() takes and find() finds, or
-    /// else by their numbers in the surface. To be called before the first record().
+    /// Chooses how vertices are known: by their names, to which vertex() gives numbers of the
+    /// record, or else by their numbers in the surface. To be called before the first record().
     void know_by_names(bool by_names) { by_names_ = by_names; }
     bool by_names() const { return by_names_; }
 
@@ -98,10 +98,10 @@ public:
     void expect(const KeyPair& name) const { vertex_of_.prefetch(name); }
 
     /// Adds the record of another task, as if this task had visited that task's elements.
-    /// \param numbers where vertices are known by these: those that the vertices of the other
-    /// task's
-    ///        surface have in this one's
-    void append(const TransitionContours& other, std::span<const Index> numbers);
+    /// \param numbers where vertices are known by numbers of the surface: those that the vertices
+    ///        of the other task's surface have in this one's
+    /// \return the numbers by which this record knows the vertices of the other one
+    std::vector<Index> append(const TransitionContours& other, std::vector<Index> numbers);
 
     /// Must be called once, after the last record() and before the first lookup.
     /// \param position tells where a vertex with a number of the surface is
@@ -111,14 +111,12 @@ public:
 
     bool empty() const { return segments_.empty(); }
 
-    /// The recorded vertex with a name, or null. Requires by_names(), like cut().
-    const Index* find(const KeyPair& name) const { return vertex_of_.find(name); }
-
     /// The number of a face on which something was recorded, or null.
     const Index* find_face(NodeKey key) const {
         return faces_.perhaps(hash(key)) ? face_number_.find(key) : nullptr;
     }
 
+    /// The cut of a vertex. Requires by_names().
     SurfaceCut cut(Index vertex) const {
         const Place& place = cuts_[vertex];
         return {place.x, place.node, place.fraction,
@@ -165,9 +163,9 @@ public:
     }
 
     std::size_t memory_bytes() const {
-        return (segments_.capacity() + grouped_.capacity()) * sizeof(Segment) +
-               cuts_.capacity() * sizeof(Place) + attributes_.capacity() * sizeof(double) +
-               faces_.memory_bytes() + vertex_of_.memory_bytes() + face_number_.memory_bytes() +
+        return segments_.capacity() * sizeof(Segment) + cuts_.capacity() * sizeof(Place) +
+               attributes_.capacity() * sizeof(double) + faces_.memory_bytes() +
+               vertex_of_.memory_bytes() + face_number_.memory_bytes() +
                (first_on_.capacity() + face_of_.capacity() + place_.capacity()) * sizeof(Index);
     }
 
@@ -238,7 +236,7 @@ private:
         return found;
     }
 
-    /// Groups the segments by face, and sorts those of faces that have many.
+    /// Groups the segments by face, where they lie, and sorts those of faces that have many.
     void group_segments();
     void sort_segments(std::size_t face) {
         std::sort(segments_.data() + first_on_[face], segments_.data() + first_on_[face + 1],
@@ -266,10 +264,9 @@ private:
     KeyTable<KeyPair, Index> vertex_of_;
     KeyTable<NodeKey, Index> face_number_;
     std::vector<Index> first_on_;  // index of the first segment, by number of face
-    std::vector<Index> face_of_;   // scratch of group_segments(), like the next two
-    std::vector<Index> place_;
-    std::vector<Segment> grouped_;
-    KeyFilter faces_;  // hashes of the faces in face_number_
+    std::vector<Index> face_of_;   // scratch of group_segments(), like the next one
+    std::vector<Index> place_;     // where the next segment on a face belongs
+    KeyFilter faces_;              // hashes of the faces in face_number_
     const SharedNodes* shared_ = nullptr;
     KeyTable<NodeKey, Corners> shared_parts_;  // by the key of a face or edge
 };

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <high_order/virtual_elements.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <nestgrid/error.hpp>
 
@@ -43,6 +45,11 @@ HighOrderData::HighOrderData(const Hierarchy<double>& from)
     records.finish();
 }
 
+const LeafCorners& HighOrderData::corners() const {
+    std::call_once(corners_made_, [this] { corners_.emplace(walk, records); });
+    return *corners_;
+}
+
 namespace {
 
 HierarchyFacts facts_of(const HighOrderData& data) {
@@ -76,6 +83,20 @@ HighOrder::HighOrder(const Hierarchy<double>& base)
 
 int HighOrder::greatest_degree() const { return data_->records.greatest_degree(); }
 double HighOrder::jump() const { return data_->records.jump(); }
+
+double HighOrder::least_tolerance() const {
+    const engine::LeafRecords& records = data_->records;
+    double beta = 0;
+    for (const engine::LeafPolynomial& leaf : records.leaves()) {
+        const auto facts = engine::net_facts(records.net(leaf), leaf.degree, leaf.factors());
+        beta = std::max(beta, facts.beta);
+    }
+    // A half of a part has a quarter of its beta.
+    const double at_limit = std::ldexp(engine::flat_share * beta, -2 * VirtualOptions{}.depth);
+    const double size = std::max(std::abs(records.least()), std::abs(records.greatest()));
+    return std::max({at_limit, 2e-12 * size, double{std::numeric_limits<float>::min()}});
+}
+
 std::size_t HighOrder::memory_bytes() const {
     return data_->records.memory_bytes() + data_->nodes.memory_bytes();
 }

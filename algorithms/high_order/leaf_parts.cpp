@@ -14,7 +14,8 @@ namespace {
 
 std::size_t child_of(const VirtualElement& e) { return static_cast<std::size_t>(e.way & 15U); }
 
-/// Those of a part of an element inside the leaf, on the surface of the element.
+/// Facts of an edge or a face of an element that lies inside its leaf, from the coefficients of the
+/// element.
 NetFacts facts_on_part(const double* net, int degree, const ShapeParts& shape,
                        const ShapePart& part, std::span<const std::uint8_t> number) {
     std::array<std::uint8_t, 4> corner{};
@@ -41,17 +42,15 @@ bool reaches_apex(const VirtualElement& e) {
 
 }  // namespace
 
-bool VirtualElements::is_flat(const NetFacts& facts, int level) const {
-    return level >= depth_ || facts.beta <= flat_;
-}
-
 /// Finds the flat parts of an element below a leaf, from the side of the leaf.
 auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> Looked {
     const LeafPolynomial& leaf = records_->leaves()[e.leaf];
     const ShapeParts& in_leaf = leaf.parts();
     const ShapeParts& shape = *e.state->shape;
     Looked looked{0, true, net_facts(own.net, own.degree, own.factors)};
-    const bool flat_inside = is_flat(looked.facts, e.level);
+    const auto places = std::span<const Place>(e.state->at).first(shape.corners);
+    const bool flat_inside = is_flat(looked.facts.beta, e.level,
+                                     [&] { return lens_->is_fine(e.leaf, places, e.level); });
     const bool flat_parts = flat_inside && in_leaf.is_box;
     std::array<FaceMask, max_corners> faces;
     for (std::size_t k = 0; k < shape.corners; ++k) {
@@ -71,26 +70,27 @@ auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> 
             corners[i] = e.state->at[part.corner[i]];
             around &= faces[part.corner[i]];
         }
+        const auto of_part = std::span<const Place>(corners).first(part.count);
+        const auto is_fine = [&] { return lens_->is_fine(e.leaf, of_part, e.level); };
         const int number = in_leaf.part_in(around);
         bool flat = flat_parts && number < 0;
         for (std::size_t f = 0; f < flat_faces && part.count == 2; ++f) {
             flat |= part_around[f] == number && (part.corners & ~flat_face[f]) == 0;
         }
         if (!flat && number >= 0) {
-            const OnRecord on = records_->on_part(leaf, static_cast<std::size_t>(number),
-                                                  std::span(corners).first(part.count), e.level);
+            const OnRecord on =
+                records_->on_part(leaf, static_cast<std::size_t>(number), of_part, e.level);
             const NetFacts facts = records_->facts_on(on);
             looked.facts.least = std::min(looked.facts.least, facts.least);
             looked.facts.greatest = std::max(looked.facts.greatest, facts.greatest);
-            flat = is_flat(facts, e.level + on.shift);
+            flat = is_flat(facts.beta, e.level + on.shift, [&] { return lens_->is_fine(on); });
         } else if (!flat && own.curvature != nullptr) {
             constexpr std::array shapes{Shape::segment, Shape::triangle, Shape::quadrilateral};
-            const double beta =
-                own.curvature->beta(shapes[part.count - 2U],
-                                    std::span<const Place>(corners).first(part.count), e.level);
-            flat = is_flat({beta, 0, 0}, e.level);
+            flat = is_flat(own.curvature->beta(shapes[part.count - 2U], of_part, e.level), e.level,
+                           is_fine);
         } else if (!flat) {
-            flat = is_flat(facts_on_part(own.net, own.degree, shape, part, own.number), e.level);
+            flat = is_flat(facts_on_part(own.net, own.degree, shape, part, own.number).beta,
+                           e.level, is_fine);
         }
         if (flat && part.count > 2) {
             part_around[flat_faces] = number;
@@ -123,7 +123,8 @@ double VirtualElements::drawn_error(const VirtualElement& e, const OwnNet& own, 
     return std::min(distance + fit.residual, beta + off + 2 * fit.residual) + least_beyond_;
 }
 
-/// The same of a pyramid or tetrahedron below a pyramid, with U in a box around it.
+/// What drawn_error() is for a pyramid or a tetrahedron below a leaf that is a pyramid: U is known
+/// by its coefficients in a box around the element.
 /// \param beta of the box, which at the apex is the element
 double VirtualElements::drawn_error_in_pyramid(const VirtualElement& e, const OwnNet& own,
                                                double beta, std::span<const double> u) const {
@@ -196,7 +197,7 @@ const double* VirtualElements::box_net_of(OpenTask& task, const VirtualElement& 
     return nets_of_children(task, e.father()) + child_of(e) * net_size(leaf.degree, leaf.factors());
 }
 
-/// The same of the children of a box, one behind the other.
+/// The coefficients of component 0 in all children of a box, one child behind the other.
 const double* VirtualElements::nets_of_children(OpenTask& task, const VirtualElement& e) const {
     OpenTask::Halves& halves = task.halves[static_cast<std::size_t>(e.level)];
     if (halves.leaf == e.leaf && halves.way == e.way) return halves.nets.data();

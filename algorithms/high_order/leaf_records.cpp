@@ -139,7 +139,7 @@ void LeafRecords::add_parts(std::span<const BaseElement> way, LeafPolynomial& le
     leaf.first = static_cast<std::uint32_t>(of_part_.size());
     for (const ShapePart& part : shape.parts) {
         const std::array<Place, 4> corners = corners_of(shape, part);
-        // Of a quadrilateral: corner 0 and its neighbours.
+        // The frame of a quadrilateral is corner 0 and its two neighbours.
         const auto frame = std::span(corners).first(frame_size(part));
         const OnRecord on = around(way, frame);
         const PartFrame own = frame_between(frame);
@@ -280,6 +280,19 @@ void LeafRecords::values_at(const OnRecord& point, double* out) const {
         const int degree = put_record(point, c, whole);
         restrict_net(whole.data(), degree, factors, there, out + c);
     }
+}
+
+std::uint32_t LeafRecords::in_owner(const OnRecord& part, std::array<Place, 4>& points) const {
+    const Record& record = records_[static_cast<std::size_t>(part.record)];
+    const std::array<Place, 3> frame = places_of(leaves_[record.leaf].parts(), record.corner);
+    for (std::size_t i = 0; i < part.count; ++i) {
+        for (std::size_t d = 0; d < 3; ++d) {
+            points[i][d] = frame[0][d] * (std::int64_t{1} << part.level) +
+                           part.at[i][0] * (frame[1][d] - frame[0][d]) +
+                           part.at[i][1] * (frame[2][d] - frame[0][d]);
+        }
+    }
+    return record.leaf;
 }
 
 void LeafRecords::raise_jump(std::size_t leaf, double jump) {

@@ -42,7 +42,8 @@ struct LeafPolynomial {
 
     const ShapeParts& parts() const { return parts_of(shape); }
     const Factors& factors() const { return parts().factors; }
-    /// Of the coefficients of one component, which in a pyramid are followed by its triangle nets.
+    /// How many numbers one component has: its coefficients, and in a pyramid those of the triangle
+    /// nets behind them.
     std::size_t size() const {
         const std::size_t triangles = shape == Shape::pyramid ? triangle_nets_size(degree) : 0;
         return net_size(degree, factors()) + triangles;
@@ -68,8 +69,10 @@ public:
     OnRecord around(std::span<const BaseElement> way, std::span<const Place> points);
     /// Beta and range of component 0 on the part with these corners.
     NetFacts facts_on(const OnRecord& part) const;
-    /// Those on a part of a leaf.
+    /// Beta and range of component 0 on a part of a leaf, read from its record.
     NetFacts facts_on(const LeafPolynomial& leaf, std::size_t part) const;
+    /// Puts the points of a part of a record as points of its owner. \return the owner, a leaf
+    std::uint32_t in_owner(const OnRecord& part, std::array<Place, 4>& points) const;
     /// Values of all components at one point.
     void values_at(const OnRecord& point, double* out) const;
 

@@ -114,7 +114,7 @@ double distance_from_affine(const double* net, int degree, const Factors& factor
 /// Where a part lies: a product of one simplex in each factor of the whole.
 struct NetPart {
     Factors factors;  ///< of the part; points are left out
-    /// Of each factor of the whole, the corners of the simplex in it, in barycentric coordinates.
+    /// The corners of the simplex in each factor of the whole, in barycentric coordinates there.
     std::array<std::array<std::array<double, 4>, 4>, 3> corner{};
     std::array<std::uint8_t, 3> corners{};
     /// Which corner of the part's net each of the points is that it was made of.
@@ -149,7 +149,8 @@ std::vector<double> elevated(const double* net, int degree, const Factors& facto
 struct SimplexIndex {
     using Alpha = std::array<std::uint8_t, 4>;
     std::vector<Alpha> alpha;
-    /// Of each multi-index of one degree less, the numbers of those with one more for each corner.
+    /// For each multi-index of one degree less: the numbers of the multi-indices that have one more
+    /// at corner 0, at corner 1 and so on.
     std::vector<std::array<std::uint16_t, 4>> raised;
     /// For each two corners, what a second difference takes.
     std::vector<std::vector<std::array<std::uint16_t, 3>>> second;

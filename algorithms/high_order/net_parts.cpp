@@ -91,7 +91,8 @@ private:
     std::span<const Barycentric> corners_;
     const SimplexIndex* index_;
     double* out_ = nullptr;
-    // Of all degrees below: tetrahedra, or triangles with at most 9 coefficients side by side.
+    // Room for the nets of all degrees below: those of tetrahedra, or of triangles with at most 9
+    // coefficients side by side.
     std::array<double, std::size_t{120} * 9> work_;
 };
 

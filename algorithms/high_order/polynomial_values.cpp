@@ -60,7 +60,8 @@ public:
     ProbeResult probed;
 
 private:
-    /// Where a point lies in the coordinates of the net.
+    /// The probed point in the coordinates of its leaf's net: those of the reference element, but
+    /// in a pyramid those of the collapsed box.
     Point place(std::size_t i, const LeafPolynomial& leaf) const {
         const Point& at = probed.reference[i];
         return leaf.shape == Shape::pyramid ? collapsed(at) : at;

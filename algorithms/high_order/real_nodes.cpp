@@ -16,6 +16,14 @@ namespace {
 /// Sums of few terms are this much larger at most than they are computed.
 constexpr double rounding = 1 + 1e-12;
 
+double diameter_of(std::span<const Point> corners) {
+    double diameter = 0;
+    for (const Point& a : corners) {
+        for (const Point& b : corners) diameter = std::max(diameter, norm(a - b));
+    }
+    return diameter;
+}
+
 void raise(float& number, double to) { number = std::max(number, float_above(to * rounding)); }
 
 }  // namespace
@@ -81,33 +89,27 @@ private:
         for (std::size_t n = 0; n < e.shape->node.size(); ++n) {
             split.node[n] = *nodes_->number_.find(keys[n]);  // a corner of a leaf
         }
+        const double diameter = diameter_of(std::span(e.x).first(e.shape->corners));
+        for (const std::uint32_t number : made_by(split)) raise(node(number).size, diameter);
         for (const ShapePart& part : e.shape->parts) put_beta(way, part, split);
         splits_.push_back(split);
     }
 
-    /// Tells the nodes of a split that halve a part, or the edges of one without a node, how far
-    /// that is from flat, where it lies in a record.
+    /// Tells the node of a split that halves a part, and hangs, how far that part is from flat. A
+    /// triangle has no node: the edges that children have in it, and the faces of leaves, tell.
     void put_beta(std::span<const BaseElement> way, const ShapePart& part, const Split& split) {
         const ShapeParts& shape = *way.back().shape;
-        const auto made_in = [&](const ShapePart& halved) -> RealNode* {
-            const std::uint8_t n = node_halving(*split.rule, halved);
-            return n == no_new_node ? nullptr : &node(split.node[shape.corners + n]);
-        };
-        RealNode* const made = made_in(part);
-        if (made != nullptr && !made->hangs) return;
+        const std::uint8_t n = node_halving(*split.rule, part);
+        if (n == no_new_node) return;
+        RealNode& made = node(split.node[shape.corners + n]);
+        if (!made.hangs || made.halves > 0) return;
         const std::array<Place, 4> places = corners_of(shape, part);
         const OnRecord on = records_->around(way, std::span(places).first(part.count));
         if (on.record < 0) return;
-        const double beta = records_->facts_on(on).beta;
-        if (made != nullptr) {
-            made->shift = static_cast<std::uint8_t>(on.shift);
-            made->beta = beta;
-            return;
-        }
-        for (const ShapePart& edge : shape.parts) {
-            if ((edge.corners & ~part.corners) != 0 || edge.count > 2) continue;
-            raise(made_in(edge)->stop, flat_share * beta);
-        }
+        made.shift = static_cast<std::uint8_t>(on.shift);
+        made.beta = records_->facts_on(on).beta;
+        made.halves = static_cast<std::uint32_t>(nodes_->parts_.size());
+        nodes_->parts_.push_back(on);
     }
 
     /// Fathers come first: what moves the parents is known.
@@ -230,8 +232,10 @@ private:
     void raise_corners(const Split& split) {
         float stop = 0;
         float bound = 0;
+        float size = 0;
         for (const std::uint32_t number : made_by(split)) {
             const RealNode& made = node(number);
+            size = std::max(size, made.size);
             stop = std::max(stop, made.stop);
             bound = std::max(bound, made.bound);
         }
@@ -240,6 +244,7 @@ private:
             RealNode& corner = node(number);
             corner.stop = std::max(corner.stop, stop);
             corner.bound = std::max(corner.bound, bound);
+            raise(corner.size, 1.25 * static_cast<double>(size));
         }
     }
 
@@ -256,6 +261,7 @@ RealNodes::RealNodes(const Hierarchy<double>& base, const BaseWalk& walk, LeafRe
     : records_{&records}, epoch_{base.epoch()} {
     Preroll(*this, walk, records).run();
     nodes_.shrink_to_fit();
+    parts_.shrink_to_fit();
     values_.shrink_to_fit();
 }
 
@@ -275,8 +281,8 @@ double RealNodes::bound(const Rule&, std::span<const NodeKey> keys) const {
 }
 
 std::size_t RealNodes::memory_bytes() const {
-    return nodes_.capacity() * sizeof(RealNode) + values_.capacity() * sizeof(double) +
-           number_.memory_bytes();
+    return nodes_.capacity() * sizeof(RealNode) + parts_.capacity() * sizeof(OnRecord) +
+           values_.capacity() * sizeof(double) + number_.memory_bytes();
 }
 
 }  // namespace nestgrid::engine

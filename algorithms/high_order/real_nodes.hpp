@@ -14,7 +14,8 @@
 //   stop   with the tolerance tau, S = (stop <= tau) holds only where every element that may stop
 //          differs from U by at most tau, and where all edges and faces of leaves around and below
 //          are flat at tau / 3. It is saturated: at a corner no less than at the new nodes. A
-//          triangle has no node of its own: those on its edges know its beta.
+//          triangle has no node of its own. The edges that halve it are edges of children, and its
+//          parts are faces of leaves: where these are flat, every deeper node in it hangs.
 // Consequence: where an element stops, every deeper node on its faces is interpolated, those of the
 // hierarchy by `stop`, virtual ones by beta.
 #pragma once
@@ -34,7 +35,11 @@ struct RealNode {
     float bound = 0;
     float off = 0;  ///< the node's own part of the bound
     bool hangs = false;
-    std::uint8_t shift = 0;  ///< the part halved has 2^-shift of the size of the record
+    std::uint8_t shift = 0;    ///< the part halved has 2^-shift of the size of the record
+    std::uint32_t halves = 0;  ///< where it hangs, the number of the part that it halves, if any
+    /// For a lens: the greatest diameter of the elements that make the node, and 5/4 of the size of
+    /// finer nodes. T at a node is at least that at a corner less slope times this diameter.
+    float size = 0;
 };
 
 /// The table of all nodes of the hierarchy, which is also the guide of searches.
@@ -52,6 +57,8 @@ public:
         return values_.data() + *number_.find(key) * records_->components();
     }
     std::size_t size() const { return nodes_.size(); }
+    /// The part of a record that a node halves.
+    const OnRecord& part_halved(const RealNode& node) const { return parts_[node.halves]; }
     std::size_t memory_bytes() const;
 
     double offset_bound(NodeKey node) const override;
@@ -76,6 +83,7 @@ private:
     const LeafRecords* records_;
     std::uint64_t epoch_;
     std::vector<RealNode> nodes_;
+    std::vector<OnRecord> parts_{1};  // that nodes halve; the first one is none
     std::vector<double> values_;
     KeyTable<NodeKey, std::uint32_t> number_;
 };

@@ -28,7 +28,10 @@ VirtualElements::VirtualElements(std::shared_ptr<const HighOrderData> data,
       tolerance_{options.tolerance},
       flat_{options.tolerance / flat_share},
       depth_{options.depth},
-      criterion_{*nodes_, options.tolerance} {
+      lens_{options.lens
+                ? std::make_shared<const LensSizes>(*options.lens, *records_, data_->corners())
+                : nullptr},
+      criterion_{*nodes_, options.tolerance, lens_} {
     const double size = std::max(std::abs(records_->least()), std::abs(records_->greatest()));
     least_beyond_ = 1e-14 * size;
     linear_ = records_->greatest_degree() == 1 && records_->jump() <= 1e-12 * size;
@@ -49,7 +52,9 @@ NodeMask VirtualElements::Stops::holds(const NewNodes& nodes) const {
     NodeMask mask = 0;
     for (std::size_t n = 0; n < nodes.keys.size(); ++n) {
         const RealNode* const node = nodes_->find(nodes.keys[n]);
-        const bool stops = node != nullptr && static_cast<double>(node->stop) <= tolerance_;
+        const bool stops = node != nullptr && static_cast<double>(node->stop) <= tolerance_ &&
+                           (lens_ == nullptr ||
+                            lens_->may_stop(static_cast<double>(node->size), nodes.positions[n]));
         mask |= NodeMask{stops} << n;
     }
     return mask & ~nodes.outside;
@@ -226,7 +231,10 @@ void VirtualElements::describe_split(const VirtualElement& e, Member& member) co
     for (std::size_t n = 0; n < member.rule->new_nodes.size(); ++n) {
         const RealNode* const node = nodes_->find(keys[corners + n]);
         if (node == nullptr) continue;
-        const bool flat = node->hangs && (node->beta <= flat_ || node->shift >= depth_);
+        const bool flat =
+            node->hangs && is_flat(node->beta, node->shift, [&] {
+                return node->halves == 0 || lens_->is_fine(nodes_->part_halved(*node));
+            });
         member.constrained |= NodeMask{flat} << n;
     }
 }

@@ -3,9 +3,10 @@
 //
 // Elements of a virtual refinement: those of the hierarchy, and the parts of leaves.
 //
-// A part of a leaf is flat where beta is at most a third of the tolerance, or where it is as small
-// as the depth allows. A leaf, or an element below it, is divided where an edge, a face or itself
-// is not flat, or where what is drawn in it might miss U by more than the tolerance. Invariants:
+// A part of a leaf is flat where beta is at most a third of the tolerance, and it is as small as a
+// lens asks if there is one; or where it is as small as the depth allows. A leaf, or an element
+// below it, is divided where an edge, a face or itself is not flat, or where what is drawn in it
+// might miss U by more than the tolerance. Invariants:
 //   - a new node hangs exactly where the part that it halves is flat;
 //   - values and flatness of what lies on the surface of a leaf come from the records, of what lies
 //     inside from its own coefficients;
@@ -14,8 +15,10 @@
 // any side, so that drawings are closed as at other hanging nodes.
 #pragma once
 
+#include <mutex>
 #include <optional>
 
+#include <high_order/lens_sizes.hpp>
 #include <high_order/real_nodes.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
 #include <walk/position_functions.hpp>
@@ -32,6 +35,13 @@ struct HighOrderData {
 
     explicit HighOrderData(const Hierarchy<float>& single);
     explicit HighOrderData(const Hierarchy<double>& base);
+
+    /// Made when a lens first asks for them.
+    const LeafCorners& corners() const;
+
+private:
+    mutable std::once_flag corners_made_;
+    mutable std::optional<LeafCorners> corners_;
 };
 
 /// What is known of an element besides its name.
@@ -76,17 +86,20 @@ public:
                        std::span<Point> out) const;
 
 private:
-    /// S = (stop <= tolerance) at nodes of the hierarchy.
+    /// S = (stop <= tolerance) at nodes of the hierarchy, and the lens lets elements stop there.
     class Stops final : public Criterion {
     public:
-        Stops(const RealNodes& nodes, double tolerance) : nodes_{&nodes}, tolerance_{tolerance} {}
+        Stops(const RealNodes& nodes, double tolerance, std::shared_ptr<const LensSizes> lens)
+            : nodes_{&nodes}, tolerance_{tolerance}, lens_{std::move(lens)} {}
         NodeMask holds(const NewNodes& nodes) const override;
         bool saturated() const override { return true; }
+        bool wants_positions() const override { return lens_ != nullptr; }
         bool made_for(std::uint64_t epoch) const override { return nodes_->made_for(epoch); }
 
     private:
         const RealNodes* nodes_;
         double tolerance_;
+        std::shared_ptr<const LensSizes> lens_;
     };
     /// The nets of the children of the boxes on the way down that were entered last.
     struct OpenTask final : Task {
@@ -133,7 +146,11 @@ private:
                        InnerBounds& inner) const;
     // One leaf and its parts (leaf_parts.cpp).
     Looked look(const VirtualElement& e, const OwnNet& own) const;
-    bool is_flat(const NetFacts& facts, int level) const;
+    /// \param is_fine whether the lens finds the part fine; asked only if there is a lens
+    template <class IsFine>
+    bool is_flat(double beta, int level, const IsFine& is_fine) const {
+        return level >= depth_ || (beta <= flat_ && (lens_ == nullptr || is_fine()));
+    }
     double drawn_error(const VirtualElement& e, const OwnNet& own, double beta,
                        std::span<const double> u) const;
     double drawn_error_in_pyramid(const VirtualElement& e, const OwnNet& own, double beta,
@@ -154,6 +171,7 @@ private:
     int depth_;
     double least_beyond_;  // covers rounding
     bool linear_;          // every leaf is the interpolant of its corners, and fits its neighbours
+    std::shared_ptr<const LensSizes> lens_;  // or null
     Stops criterion_;
 };
 

@@ -15,7 +15,7 @@
 #include <contours/level.hpp>
 #include <patches/edge_pieces.hpp>
 #include <patches/patch_contour_run.hpp>
-#include <surfaces/level_surface.hpp>
+#include <surfaces/drawn_surface.hpp>
 #include <surfaces/simplex_tally.hpp>
 
 namespace nestgrid::engine {
@@ -24,7 +24,7 @@ namespace nestgrid::engine {
 template <int dimension, class Real>
 struct PatchTarget {
     std::span<const Level<Real>> levels;
-    std::span<LevelSurface<dimension>> surfaces;
+    std::span<DrawnSurface<dimension>> surfaces;
     SimplexTally* tally;
     int* deepest;           ///< depth of the deepest element drawn so far
     bool carries = false;   ///< whether vertices carry a value (mean_values.hpp)
@@ -42,7 +42,7 @@ class PatchDrawing {
     using Places = BatchPlaces<pattern_>;
     using Run = PatchContourRun<pattern_>;
     using Target = PatchTarget<dimension, Real>;
-    using Surface = LevelSurface<dimension>;
+    using Surface = DrawnSurface<dimension>;
     using Number = typename Surface::Number;
 
 public:

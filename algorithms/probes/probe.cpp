@@ -9,7 +9,7 @@
 #include <numeric>
 #include <string>
 
-#include <levels/draw.hpp>
+#include <drawing/requirements.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
 #include <probes/box_descent.hpp>
 #include <probes/descent.hpp>

@@ -36,6 +36,8 @@ Isosurface<dimension> isosurface(const Hierarchy<Real>& hierarchy, double isoval
                          .front());
 }
 
+/// \throw InvalidInput unless low < high, and for caps
+void require_band(double low, double high, const IsosurfaceOptions& options);
 template <int dimension, class Real>
 Isosurface<dimension> isoband(const Hierarchy<Real>& hierarchy, double low, double high,
                               const Criterion& criterion, const Bounds& bounds,
@@ -64,14 +66,17 @@ template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const IsosurfaceOptions& options, const Executor& executor);
 
-/// Counts triangles of slices and isosurfaces before vertices are merged at nodes.
+/// The number of triangles of slices and isosurfaces, before vertices are merged at nodes, or
+/// nothing where there are more than `most`.
+///
+/// \throw Cancelled where options.progress ends it
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const SliceRequest& request,
                                              const Criterion& criterion, const Bounds& bounds,
                                              std::uint64_t most, const IsosurfaceOptions& options,
                                              const Executor& executor);
-/// Counts the triangles of a shading.
+/// The number of triangles of a shading, or nothing where there are more than `most`.
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Criterion& criterion, const Bounds& bounds,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <graphs/triangulate.hpp>
+#include <height_fields/triangulate.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/collapse_colours.hpp>
@@ -14,6 +14,7 @@
 #include <nestgrid/algorithms/triangle_budget.hpp>
 #include <projection/by_criterion.hpp>
 #include <projection/drawn_within.hpp>
+#include <walk/frontier.hpp>
 
 namespace nestgrid {
 
@@ -146,7 +147,11 @@ Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
         return engine::triangulate(fine, scale.value_or(0), fine.criterion(), fine.bounds(),
                                    options, work.executor);
     };
-    if (auto drawn = engine::within_error<Shading>(prerolls, projection, work, 2, within)) {
+    const auto count = [&](const VirtualRefinement& fine, std::uint64_t most) {
+        return engine::count_triangles(fine, fine.criterion(), fine.bounds(), most, options,
+                                       work.executor);
+    };
+    if (auto drawn = engine::within_error<Shading>(prerolls, projection, work, 2, within, count)) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, 2, [&](const auto& hierarchy) {
@@ -168,7 +173,11 @@ Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
         return engine::slice(fine, function, fine.criterion(), fine.bounds(), options,
                              work.executor);
     };
-    if (auto drawn = engine::within_error<Slice>(prerolls, projection, work, 3, within)) {
+    const auto count = [&](const VirtualRefinement& fine, std::uint64_t most) {
+        return engine::count_triangles(fine, {{&function}}, fine.criterion(), fine.bounds(), most,
+                                       options, work.executor);
+    };
+    if (auto drawn = engine::within_error<Slice>(prerolls, projection, work, 3, within, count)) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
@@ -202,12 +211,16 @@ std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const Sli
                                              const Projection& projection, std::uint64_t most,
                                              const IsosurfaceOptions& options, const Work& work) {
     engine::check_one_walk(prerolls, projection, "several slices");
-    return engine::draw_once(
-        prerolls, projection, request.isovalues, work, 3,
-        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
-            return engine::count_triangles(hierarchy, request, criterion, bounds, most, options,
-                                           work.executor);
-        });
+    try {
+        return engine::draw_once(
+            prerolls, projection, request.isovalues, work, 3,
+            [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+                return engine::count_triangles(hierarchy, request, criterion, bounds, most, options,
+                                               work.executor);
+            });
+    } catch (const engine::Cancelled&) {
+        return std::nullopt;
+    }
 }
 
 std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const Projection& projection,

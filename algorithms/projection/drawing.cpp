@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/drawing.hpp>
 
-#include <limits>
-
+#include <level_sets/draw.hpp>
 #include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
@@ -132,9 +131,7 @@ void check_isosurface(const Projection& projection, const IsosurfaceOptions& opt
 }  // namespace
 
 double default_error(const HighOrder& data) {
-    // Bounds are the same at any tolerance.
-    const VirtualRefinement coarsest(data, {.tolerance = std::numeric_limits<double>::max()});
-    const double range = coarsest.bounds().greatest() - coarsest.bounds().least();
+    const double range = engine::range_of(data);
     return range > 0 ? 1e-3 * range : 1;
 }
 
@@ -145,6 +142,8 @@ Projection with_error(const Prerolls& prerolls, Projection projection, const Wor
     if (projection.draws_everything()) {
         projection.indicator = "error";
         projection.threshold = default_error(*data);
+    } else if (projection.indicator == "offset" && !projection.threshold) {
+        projection.indicator = "error";  // within a number of triangles, or by a lens alone
     }
     projection.require_error_alone(data->greatest_degree());
     return projection;
@@ -160,8 +159,13 @@ Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double iso
         return engine::isosurface<dimension>(fine, isovalue, fine.criterion(), fine.bounds(),
                                              options, work.executor);
     };
+    const auto count = [&](const VirtualRefinement& fine, std::uint64_t most) {
+        const auto levels = engine::isosurface_levels<double>(fine, std::span(&isovalue, 1));
+        return engine::count_simplices<dimension>(levels, fine.criterion(), fine.bounds(), most,
+                                                  options, work.executor);
+    };
     if (auto drawn = engine::within_error<Isosurface<dimension>>(prerolls, projection, work,
-                                                                 dimension, within)) {
+                                                                 dimension, within, count)) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
@@ -216,18 +220,60 @@ template std::vector<Isosurface<3>> detail::draw_isosurfaces(const Prerolls&,
                                                              const Projection&,
                                                              const IsosurfaceOptions&, const Work&);
 
+namespace {
+
+/// Draws level sets of one walk, perhaps within a number of triangles (segments) of all together.
+/// \param dimension of the grid
+/// \param draw draw(hierarchy, criterion, bounds)
+template <class Result, int dimension, class Draw>
+Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double> isovalues,
+                                const Projection& projection, const IsosurfaceOptions& options,
+                                const Work& work, const Draw& draw) {
+    const auto within = [&](const VirtualRefinement& fine) {
+        return draw(fine, fine.criterion(), fine.bounds());
+    };
+    const auto count = [&](const VirtualRefinement& fine, std::uint64_t most) {
+        const auto levels = engine::isosurface_levels<double>(fine, isovalues);
+        return engine::count_simplices<dimension>(levels, fine.criterion(), fine.bounds(), most,
+                                                  options, work.executor);
+    };
+    if (auto drawn =
+            engine::within_error<Result>(prerolls, projection, work, dimension, within, count)) {
+        return *std::move(drawn);
+    }
+    return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
+        const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
+        const Bounds& bounds = criteria.bounds();
+        const TriangleBudget search = engine::threshold_of(projection, work, [&] {
+            const engine::Levels levels = engine::isosurface_levels(hierarchy, isovalues);
+            const auto find = [&](const detail::MakeCriterion& make) {
+                return engine::find_threshold<dimension>(
+                    levels, make, {bounds, bounds.greatest() - bounds.least()},
+                    projection.max_triangles, options, work.executor);
+            };
+            return detail::with_made(engine::criteria_at(criteria), find);
+        });
+        work.begin("drawing");
+        return Projected<Result>{draw(hierarchy, criteria.at(search.threshold), bounds), search};
+    });
+}
+
+}  // namespace
+
 template <int dimension>
 Projected<Isosurface<dimension>> isoband(const Prerolls& prerolls, double low, double high,
                                          const Projection& projection,
                                          const IsosurfaceOptions& options, const Work& work) {
-    engine::check_one_walk(prerolls, projection, "bands");
-    return {engine::draw_once(
-                prerolls, projection, std::array{low, high}, work, dimension,
-                [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
-                    return engine::isoband<dimension>(hierarchy, low, high, criterion, bounds,
-                                                      options, work.executor);
-                }),
-            {.threshold = projection.least_threshold()}};
+    engine::check_first(prerolls, projection, "bands", [&] {
+        engine::refuse_all_but_budgets(projection, "bands");
+        engine::require_band(low, high, options);
+    });
+    return draw_together<Isosurface<dimension>, dimension>(
+        prerolls, std::array{low, high}, projection, options, work,
+        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+            return engine::isoband<dimension>(hierarchy, low, high, criterion, bounds, options,
+                                              work.executor);
+        });
 }
 template Projected<Isosurface<2>> isoband<2>(const Prerolls&, double, double, const Projection&,
                                              const IsosurfaceOptions&, const Work&);
@@ -237,14 +283,13 @@ template Projected<Isosurface<3>> isoband<3>(const Prerolls&, double, double, co
 Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> values,
                              const Projection& projection, const IsosurfaceOptions& options,
                              const Work& work) {
-    engine::check_one_walk(prerolls, projection, "isolines");
-    return {engine::draw_once(
-                prerolls, projection, values, work, 2,
-                [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
-                    return engine::isolines(hierarchy, values, criterion, bounds, options,
-                                            work.executor);
-                }),
-            {.threshold = projection.least_threshold()}};
+    engine::check_first(prerolls, projection, "isolines",
+                        [&] { engine::refuse_all_but_budgets(projection, "isolines"); });
+    return draw_together<Isolines, 2>(
+        prerolls, values, projection, options, work,
+        [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+            return engine::isolines(hierarchy, values, criterion, bounds, options, work.executor);
+        });
 }
 
 ProbeResult probe(const Prerolls& prerolls, std::span<const Point> points,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <projection/drawn_within.hpp>
 
+#include <algorithm>
+#include <limits>
 #include <string>
 
 #include <nestgrid/error.hpp>
@@ -36,13 +38,17 @@ void refuse_slice_distance(const Projection& projection) {
     }
 }
 
+void refuse_all_but_budgets(const Projection& projection, const char* drawing) {
+    refuse_collapse(projection, drawing);
+    refuse_distance(projection);
+    refuse_slice_distance(projection);
+    refuse_tolerance(projection);
+}
+
 void check_one_walk(const Prerolls& prerolls, const Projection& projection, const char* drawing) {
     check_first(prerolls, projection, drawing, [&] {
-        refuse_collapse(projection, drawing);
+        refuse_all_but_budgets(projection, drawing);
         refuse_budget(projection, drawing);
-        refuse_distance(projection);
-        refuse_slice_distance(projection);
-        refuse_tolerance(projection);
     });
 }
 
@@ -59,6 +65,27 @@ std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
     auto data = prerolls.high_order(work);
     if (data != nullptr) projection.require_error_alone(data->greatest_degree());
     return data;
+}
+
+double range_of(const HighOrder& data) {
+    // Bounds are the same at any tolerance.
+    const VirtualRefinement coarsest(data, {.tolerance = std::numeric_limits<double>::max()});
+    return coarsest.bounds().greatest() - coarsest.bounds().least();
+}
+
+VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
+                                 double tolerance) {
+    return {data,
+            {.tolerance = std::min(tolerance, std::numeric_limits<double>::max()),
+             .lens = projection.lens}};
+}
+
+TriangleBudget find_tolerance(const HighOrder& data, const Projection& projection,
+                              const CountWithin& count) {
+    const auto at = [&](double tolerance, std::uint64_t most) {
+        return count(polynomials_at(data, projection, tolerance), most);
+    };
+    return least_threshold(at, range_of(data), projection.max_triangles, data.least_tolerance());
 }
 
 }  // namespace nestgrid::engine

@@ -4,6 +4,7 @@
 // What all drawings under a projection have in common (drawing.hpp).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -22,6 +23,8 @@ void refuse_budget(const Projection& projection, const char* drawing);
 void refuse_distance(const Projection& projection);
 void refuse_tolerance(const Projection& projection);
 void refuse_slice_distance(const Projection& projection);
+/// Refuses what is more than a threshold or a number of triangles.
+void refuse_all_but_budgets(const Projection& projection, const char* drawing);
 /// Checks what a drawing is asked for, before anything is drawn or exchanged: on ranks, all end
 /// alike.
 /// \param refuse throws for what this drawing does not do
@@ -43,6 +46,11 @@ Projection told(Projection projection);
 std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
                                                  const Projection& projection, const Work& work);
 
+/// The polynomials within a tolerance, of which infinity is one, and as finely as the lens of the
+/// projection asks.
+VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
+                                 double tolerance);
+
 /// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
 template <class Function>
 auto with_field(const Prerolls& prerolls, const Work& work, int dimension,
@@ -60,21 +68,44 @@ auto from_polynomials(const Prerolls& prerolls, const Projection& projection, co
                       const Ask& ask) {
     std::optional<std::invoke_result_t<const Ask&, const VirtualRefinement&>> result;
     if (const auto data = polynomials_for(prerolls, projection, work)) {
-        result = ask(VirtualRefinement(*data, {.tolerance = projection.least_threshold()}));
+        result = ask(polynomials_at(*data, projection, projection.least_threshold()));
     }
     return result;
 }
 
-/// Draws a field of higher degree likewise, if it has the dimension.
+/// The threshold that the projection gives, or the one that find() finds for its number.
+template <class Find>
+TriangleBudget threshold_of(const Projection& projection, const Work& work, const Find& find) {
+    if (projection.max_triangles == 0) return {.threshold = projection.least_threshold()};
+    work.begin("searching the threshold");
+    return find();
+}
+
+/// From the least to the greatest value of polynomials, or a little more.
+double range_of(const HighOrder& data);
+/// The number of triangles of a drawing of polynomials, or nothing where there are more than
+/// `most`.
+using CountWithin =
+    std::function<std::optional<std::uint64_t>(const VirtualRefinement&, std::uint64_t most)>;
+/// The least tolerance at which a drawing of polynomials keeps within a number of triangles.
+TriangleBudget find_tolerance(const HighOrder& data, const Projection& projection,
+                              const CountWithin& count);
+
+/// Draws a field of higher degree, if it has the dimension: within the error that the projection
+/// asks for, or the least one with its number of triangles. Nothing where it asks for neither, or
+/// where all degrees are 1.
 template <class Result, class Draw>
 std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
                                               const Projection& projection, const Work& work,
-                                              int dimension, const Draw& draw) {
-    return from_polynomials(prerolls, projection, work, [&](const VirtualRefinement& fine) {
-        prerolls.field().facts().require_dimension(dimension);
-        work.begin("drawing");
-        return Projected<Result>{draw(fine), {.threshold = projection.least_threshold()}};
-    });
+                                              int dimension, const Draw& draw,
+                                              const CountWithin& count) {
+    const auto data = polynomials_for(prerolls, projection, work);
+    if (data == nullptr) return std::nullopt;
+    prerolls.field().facts().require_dimension(dimension);
+    const TriangleBudget search =
+        threshold_of(projection, work, [&] { return find_tolerance(*data, projection, count); });
+    work.begin("drawing");
+    return Projected<Result>{draw(polynomials_at(*data, projection, search.threshold)), search};
 }
 
 /// Calls draw(hierarchy, criterion, bounds) once, with a field of the dimension under the
@@ -102,14 +133,6 @@ auto draw_once(const Prerolls& prerolls, const Projection& projection,
 
 inline auto criteria_at(const Criteria& criteria) {
     return [&criteria](double threshold) { return criteria.at(threshold); };
-}
-
-/// The threshold that the projection gives, or the one that find() finds for its number.
-template <class Find>
-TriangleBudget threshold_of(const Projection& projection, const Work& work, const Find& find) {
-    if (projection.max_triangles == 0) return {.threshold = projection.least_threshold()};
-    work.begin("searching the threshold");
-    return find();
 }
 
 }  // namespace nestgrid::engine

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 
+#include <level_sets/leaf_bounds.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/error.hpp>
 #include <ranks/agreement.hpp>
-#include <slices/leaf_bounds.hpp>
 
 namespace nestgrid::engine {
 
@@ -67,7 +67,6 @@ void require_drawn_on_ranks(const Hierarchy<Real>& grid) {
         Refused{grid.offers(Feature::hidden), "a grid with hidden elements"},
         Refused{grid.offers(Feature::masked), "a grid with masked elements"},
         Refused{grid.offers(Feature::outside), "a grid that ends outside its coarse elements"},
-        Refused{grid.offers(Feature::new_positions), "a grid with curved elements"},
         Refused{grid.offers(Feature::hanging_parents), "a grid with nodes that hang across"},
     };
     refuse_first(refused);

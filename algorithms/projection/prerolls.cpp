@@ -134,7 +134,6 @@ public:
     }
 
     std::shared_ptr<const HighOrder> high_order(const Work& work) {
-        if (between_frames()) return nullptr;
         if (work.same_field != nullptr) return engine::polynomials_of(*work.same_field);
         const std::scoped_lock lock(mutex_);
         if (!high_order_) high_order_ = engine::polynomials_of(field_);

@@ -56,14 +56,10 @@ void Projection::check() const {
 
 void Projection::require_error_alone(int degree) const {
     std::string what;
-    if (max_triangles > 0) {
-        what = "no number of triangles";
-    } else if (collapse) {
+    if (collapse) {
         what = "no collapse of edges";
     } else if (keeps_distance || indicator == "slope") {
         what = "no distance";
-    } else if (lens) {
-        what = "no lens";
     } else if (region) {
         what = "no region";
     } else if (colour_tolerance > 0) {

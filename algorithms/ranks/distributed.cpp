@@ -39,10 +39,14 @@ private:
     }
 };
 
-/// All nodes of the elements that this rank visits, with their places where keys are the grid's
-/// own.
+/// Whether the grid says more of a node than ranks derive alike: its key, or its place.
+bool may_differ(const Hierarchy<float>& grid) {
+    return grid.offers(Feature::own_keys) || grid.offers(Feature::new_positions);
+}
+
+/// All nodes of the elements that this rank visits, with their places where these may differ.
 std::vector<SharedNodes::Candidate> nodes_of(const Hierarchy<float>& grid) {
-    const bool places = grid.offers(Feature::own_keys);
+    const bool places = may_differ(grid);
     const Walk<float> walk(grid,
                            {.values = false, .keys = true, .positions = places, .on_ranks = true});
     struct Seen {};
@@ -78,8 +82,10 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
     const engine::BeforeSharing before(grid, *shared);
     std::vector<engine::SharedNodes::Candidate> nodes;
     const auto asked = [&] {
-        return (grid.offers(Feature::own_keys) ? "a distributed grid with own keys, of dimension "
-                                               : "a distributed grid of dimension ") +
+        return (grid.offers(Feature::own_keys) ? "a distributed grid with own keys"
+                                               : "a distributed grid") +
+               std::string(grid.offers(Feature::new_positions) ? ", curved, of dimension "
+                                                               : ", of dimension ") +
                std::to_string(grid.facts().dimension) + " with nodes of more than " +
                std::to_string(most_sharers) + " ranks told to all";
     };
@@ -87,7 +93,7 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
         engine::require_drawn_on_ranks(grid);
         nodes = engine::nodes_of(before);
     });
-    shared->find(nodes, most_sharers, grid.offers(Feature::own_keys));
+    shared->find(nodes, most_sharers, engine::may_differ(grid));
     shared->set_hanging(engine::hanging_across(before, *shared));
     return shared;
 }

@@ -22,8 +22,8 @@ public:
         if (known.node.place != node.place && conflict_.empty()) {
             conflict_ = "ranks " + std::to_string(known.ranks.front()) + " and " +
                         std::to_string(rank) +
-                        " have a node at two places under one key: own keys of a distributed grid "
-                        "must be the same on all ranks";
+                        " have a node at two places under one key: own keys of a distributed grid, "
+                        "and its positions of nodes, must be the same on all ranks";
         }
         known.ranks.push_back(rank);
     }

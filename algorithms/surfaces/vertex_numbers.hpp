@@ -110,9 +110,7 @@ private:
     }
 
     NESTGRID_NOINLINE void grow() {
-        // A small table grows fast, which moves its slots less often.
-        const std::size_t factor = slots_.size() < (std::size_t{1} << 16U) ? 8 : 2;
-        std::vector<Slot> old(slots_.empty() ? std::size_t{1024} : factor * slots_.size());
+        std::vector<Slot> old(slots_.empty() ? std::size_t{1024} : 2 * slots_.size());
         old.swap(slots_);
         mask_ = slots_.size() - 1;
         for (const Slot& slot : old) {

@@ -92,7 +92,8 @@ struct ClosedFace {
 /// The closed parts around the edges and faces of an element.
 template <class Real>
 struct ClosedParts {
-    bool any;            ///< where false, nothing else is set
+    bool any;            ///< where false, nothing else is set but any_face, which is false, too
+    bool any_face;       ///< whether there is a closed face
     const Child* child;  ///< the element in the rule that made it
     /// Around the edges of that rule and around parts of its faces; null behind the last one.
     const MaximalEdge<Real>* const* around_edge;
@@ -126,9 +127,9 @@ struct ClosingSplit {
     void close(const ElementView<Real>& view, const Rule& rule, NodeMask mean);
 
     ClosedParts<Real> around(const Child& child) const {
-        const bool any =
-            ((edges_closed & child.rule_edges) | (faces_closed & child.rule_faces)) != 0;
-        return {any, &child, edge.data(), face.data()};
+        const bool any_face = (faces_closed & child.rule_faces) != 0;
+        const bool any = any_face || (edges_closed & child.rule_edges) != 0;
+        return {any, any_face, &child, edge.data(), face.data()};
     }
 };
 

@@ -231,7 +231,7 @@ ClosedParts<Real> FixedNodes<Real>::around(const Split& split, const ClosingSpli
         if (has_crossing) crossed.around_face[f] = around_face(corner, crossed.of_child);
     }
     if (!any) return parts;
-    return {true, &crossed.child, crossed.around_edge.data(), crossed.around_face.data()};
+    return {true, true, &crossed.child, crossed.around_edge.data(), crossed.around_face.data()};
 }
 
 template class FixedNodes<float>;

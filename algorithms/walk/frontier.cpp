@@ -98,6 +98,7 @@ public:
         }
         ++item_;
         if (!here.entry) return visitor_->look(view, split);
+        visitor_->begin_entry(here.first_entry);
         visitor_->walk_below(*walk_, view);
         return {Visit::skip, 0};
     }

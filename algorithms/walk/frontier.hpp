@@ -34,6 +34,9 @@ public:
     virtual void restart() = 0;
     /// Decides like inspect(), without counting the element.
     virtual Decision look(const ElementView<Real>& view, const Split& split) = 0;
+    /// Told the number of an entry, from 0, before walk_below(): how many entries' inspect() calls
+    /// were taken back before.
+    virtual void begin_entry(std::size_t /*number*/) {}
     /// Visits an element and all below it. A final visitor has the walk compiled for its class.
     virtual void walk_below(const Walk<Real>& walk, const ElementView<Real>& view) {
         walk.walk_below(view, *this);

@@ -143,7 +143,7 @@ bool Walk<Real>::make_coarse(std::size_t i, Stack& stack, View& view) const {
     view.node_position = coarse.corners.data();
     view.node_placed = coarse.corners.data();
     view.path = detail::mix(static_cast<NodeKey>(i));
-    view.closed.any = false;
+    view.closed.any = view.closed.any_face = false;
     view.level = 0;
     view.shape = coarse.shape;
     view.orientation = coarse.orientation;

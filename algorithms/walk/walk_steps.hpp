@@ -237,7 +237,7 @@ NESTGRID_INLINE auto Walk<Real>::make_child(const View& father, const Rule& rule
     child.node_key = frame.key.data();
     child.node_position = frame.position.data();
     child.node_placed = frame.placed.data();
-    child.closed.any = false;
+    child.closed.any = child.closed.any_face = false;
     child.level = father.level + 1;
     child.boundary = 0;
     child.interpolated = 0;

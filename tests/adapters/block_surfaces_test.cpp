@@ -185,4 +185,131 @@ TEST(BlockSurfaces, OfBallsAreOfSecondOrder) {
     }
 }
 
+/// A function with its gradient, and a level of it inside the unit cube.
+struct Smooth {
+    std::string name;
+    std::function<double(const Point&)> value;
+    std::function<Point(const Point&)> gradient;
+    double isovalue;
+};
+
+std::vector<Smooth> smooth_functions() {
+    const Point middle{0.47, 0.52, 0.49};
+    const auto s = [](double x) { return std::sin(6 * x); };
+    const auto c = [](double x) { return std::cos(6 * x); };
+    return {
+        {"distance", [=](const Point& x) { return norm(x - middle); },
+         [=](const Point& x) { return x - middle; }, 0.31},
+        {"square", [=](const Point& x) { return dot(x - middle, x - middle); },
+         [=](const Point& x) { return x - middle; }, 0.31 * 0.31},
+        {"gyroid",
+         [=](const Point& x) { return s(x[0]) * c(x[1]) + s(x[1]) * c(x[2]) + s(x[2]) * c(x[0]); },
+         [=](const Point& x) {
+             return Point{c(x[0]) * c(x[1]) - s(x[2]) * s(x[0]),
+                          c(x[1]) * c(x[2]) - s(x[0]) * s(x[1]),
+                          c(x[2]) * c(x[0]) - s(x[1]) * s(x[2])};
+         },
+         0.1}};
+}
+
+/// The means of a function over leaves, in the order of boxes.
+std::vector<double> means_of(const Blocks<3>& blocks, const Smooth& f) {
+    const CellsOfBlocks<3> cells(blocks);
+    std::vector<double> means;
+    for (std::size_t l = 0; l < blocks.levels.size(); ++l) {
+        for (const BlockBox<3>& box : blocks.levels[l].boxes) {
+            for_each_cell(box, [&](const Cell<3>& cell) {
+                if (!cells.is_leaf(l, cell)) return;
+                const Point low = cells.at(l, cell, 0.5 - 0.5 / std::sqrt(3.0));  // Gauss' points
+                const Point high = cells.at(l, cell, 0.5 + 0.5 / std::sqrt(3.0));
+                double sum = 0;
+                for (unsigned k = 0; k < 8; ++k) {
+                    sum +=
+                        f.value({((k & 1U) != 0 ? high : low)[0], ((k & 2U) != 0 ? high : low)[1],
+                                 ((k & 4U) != 0 ? high : low)[2]});
+                }
+                means.push_back(sum / 8);
+            });
+        }
+    }
+    return means;
+}
+
+/// By how many degrees normals miss those of a function, root mean square: beside the change of
+/// level, and among the coarse cells that are not beside it.
+struct Missed {
+    double at_change;
+    double away;
+};
+Missed missed_by(const Surface<3>& surface, const Smooth& f, double cell) {
+    std::array<double, 2> sum{};
+    std::array<int, 2> count{};
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+        const Point& x = surface.vertices[v];
+        const bool at_wall =
+            std::ranges::any_of(x, [&](double at) { return std::min(at, 1 - at) < 1.5 * cell; });
+        const bool is_away = x[0] > 0.5 + 1.5 * cell;
+        if (at_wall || (!is_away && x[0] < 0.5 - 1.5 * cell)) continue;
+        const Point g = f.gradient(x);
+        const double sine = norm(cross(surface.normals[v], g)) / norm(g);
+        sum[is_away ? 1 : 0] += std::pow(std::asin(std::min(1.0, sine)) * 180 / std::acos(-1.0), 2);
+        ++count[is_away ? 1 : 0];
+    }
+    EXPECT_GT(std::min(count[0], count[1]), 50);
+    return {std::sqrt(sum[0] / count[0]), std::sqrt(sum[1] / count[1])};
+}
+
+Missed missed_by(const Smooth& f, int n, int ratio, CellRule rule) {
+    const Blocks<3> blocks = half_refined(n, {ratio});
+    const BlockGrid<3> grid(blocks);
+    const std::vector<double> means = means_of(blocks, f);
+    const BlockData<3> data(blocks, rule == CellRule::sharp_means ? in_turn(means) : f.value);
+    const BlockCells<3, double> field(grid, data.arrays(), rule);
+    const auto surface =
+        isosurface(grid, field, f.isovalue, Projection{}, {.normals = true}).surface;
+    return missed_by(surface, f, 1.0 / n);
+}
+
+/// Normals come from the data, not from what the rule makes of them: they miss by no more than 1.5
+/// times as much where levels meet as elsewhere, and by the square of the size of cells.
+TEST(BlockSurfaces, HaveNormalsAsGoodWhereLevelsMeet) {
+    for (const Smooth& f : smooth_functions()) {
+        for (const int ratio : {2, 4}) {
+            for (const CellRule rule :
+                 {CellRule::smooth, CellRule::sharp_centres, CellRule::sharp_means}) {
+                SCOPED_TRACE(f.name + ", ratio " + std::to_string(ratio) + ", rule " +
+                             std::to_string(static_cast<int>(rule)));
+                const Missed coarse = missed_by(f, 12, ratio, rule);
+                const Missed fine = missed_by(f, 24, ratio, rule);
+                const double rounding = 0.04;  // normals are turned until they agree with triangles
+                EXPECT_LE(coarse.at_change, 1.5 * coarse.away + rounding);
+                EXPECT_LE(fine.at_change, 1.5 * fine.away + rounding);
+                EXPECT_LE(fine.away, 0.3 * coarse.away + rounding);
+                EXPECT_LE(fine.at_change, 0.1);
+            }
+        }
+    }
+}
+
+/// A plane has one normal, at walls and where any levels meet.
+TEST(BlockSurfaces, OfPlanesHaveOneNormal) {
+    const Point slope{0.3, 0.7, -0.4};
+    for (unsigned seed = 1; seed < 8; ++seed) {
+        const Blocks<3> blocks = random_blocks<3>({.seed = seed, .side = 4});
+        const BlockGrid<3> grid(blocks);
+        const BlockData<3> data(blocks, [&](const Point& x) { return dot(slope, x); });
+        const BlockCells<3, double> field(grid, data.arrays());
+        const HierarchicalIndicator indicator(grid, field);
+        for (const double threshold : {0.0, 1e-9}) {
+            const auto surface =
+                isosurface(grid, field, 0.32, under(indicator, threshold), {.normals = true})
+                    .surface;
+            ASSERT_GT(surface.normals.size(), 3U);
+            for (const Point& n : surface.normals) {
+                ASSERT_LT(norm(n + (1 / norm(slope)) * slope), 1e-6);
+            }
+        }
+    }
+}
+
 }  // namespace

@@ -221,6 +221,21 @@ std::vector<Drawn> gathered(std::vector<Drawn> own, Ranks& ranks) {
     return own;
 }
 
+/// Bends trees, continuously where those of the unit cube, of bricks and of rotated cubes meet.
+struct Bent {
+    const p8est_connectivity_t* connectivity;
+    Point operator()(std::size_t tree, const Point& reference) const {
+        Point x{0, 0, 0};
+        std::array<p4est_qcoord_t, 3> at{};
+        for (std::size_t d = 0; d < 3; ++d) {
+            at[d] = static_cast<p4est_qcoord_t>(reference[d] * P8EST_ROOT_LEN);
+        }
+        p8est_qcoord_to_vertex(const_cast<p8est_connectivity_t*>(connectivity),
+                               static_cast<p4est_topidx_t>(tree), at[0], at[1], at[2], x.data());
+        return {x[0] + 0.05 * std::sin(4 * x[1]), x[1] + 0.05 * x[2] * x[2], x[2]};
+    }
+};
+
 std::vector<Drawn> draw_on_ranks(const Forest& forest, bool noise, std::size_t sharers,
                                  Ranks& ranks) {
     const Grid mine(forest.get());
@@ -229,7 +244,12 @@ std::vector<Drawn> draw_on_ranks(const Forest& forest, bool noise, std::size_t s
         return draw(grid, DistributedField(grid, KeyedField(mine, noise)));
     }
     const auto values = lnode_values(mine, *forest.nodes(), noise);
-    return draw(grid, DistributedField(grid, P4estNodalField(mine, forest.nodes(), values)));
+    auto all = draw(grid, DistributedField(grid, P4estNodalField(mine, forest.nodes(), values)));
+    const P4estGrid curved(forest.get(), Bent{forest.get()->connectivity});
+    const Distributed bent(curved, ranks, sharers);
+    const DistributedField field(bent, P4estNodalField(curved, forest.nodes(), values));
+    for (Drawn& drawn : draw(bent, field)) all.push_back(std::move(drawn));
+    return all;
 }
 
 std::vector<Drawn> draw_alone(const Forest& forest, bool noise) {
@@ -240,6 +260,10 @@ std::vector<Drawn> draw_alone(const Forest& forest, bool noise) {
     } else {
         const auto values = lnode_values(grid, *forest.nodes(), noise);
         all = draw(grid, P4estNodalField(grid, forest.nodes(), values));
+        const P4estGrid bent(forest.get(), Bent{forest.get()->connectivity});
+        for (Drawn& drawn : draw(bent, P4estNodalField(bent, forest.nodes(), values))) {
+            all.push_back(std::move(drawn));
+        }
     }
     for (Drawn& drawn : all) sort(drawn.triangles);
     return all;

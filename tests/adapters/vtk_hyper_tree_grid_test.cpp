@@ -26,11 +26,11 @@ namespace {
 
 /// Trees refined at random, neighbours differing by any number of levels.
 vtkNew<vtkHyperTreeGrid> random_trees(std::array<unsigned, 3> points, int depth, unsigned seed,
-                                      bool transposed = false) {
+                                      bool transposed = false, unsigned factor = 2) {
     vtkNew<vtkHyperTreeGrid> grid;
     grid->SetTransposedRootIndexing(transposed);
     grid->SetDimensions(points.data());
-    grid->SetBranchFactor(2);
+    grid->SetBranchFactor(factor);
     grid->SetXCoordinates(coordinates(static_cast<int>(points[0])));
     grid->SetYCoordinates(coordinates(static_cast<int>(points[1])));
     grid->SetZCoordinates(coordinates(static_cast<int>(points[2])));
@@ -45,11 +45,11 @@ vtkNew<vtkHyperTreeGrid> random_trees(std::array<unsigned, 3> points, int depth,
 }
 
 /// Value of a function at the centre of every cell, in the order of the arrays.
-template <int dim>
-std::vector<double> at_centres(const HyperTreeGrid<dim>& grid, std::size_t cells,
+template <int dim, int factor>
+std::vector<double> at_centres(const HyperTreeGrid<dim, factor>& grid, std::size_t cells,
                                const std::function<double(const Point&)>& f) {
     std::vector<double> values(cells, 0.0);
-    const ZeroField<HyperTreeGrid<dim>> zero;
+    const ZeroField<HyperTreeGrid<dim, factor>> zero;
     const auto hierarchy = erase(grid, zero);
     const engine::Walk<float> walk(hierarchy, {.positions = true});
     engine::project(walk, Exact{}, [&](const auto& view) {
@@ -63,9 +63,9 @@ std::vector<double> at_centres(const HyperTreeGrid<dim>& grid, std::size_t cells
     return values;
 }
 
-template <int dim>
+template <int dim, int factor = 2>
 void expect_laws(vtkHyperTreeGrid& trees) {
-    const HyperTreeGrid<dim> grid(trees);
+    const HyperTreeGrid<dim, factor> grid(trees);
     const auto cells = static_cast<std::size_t>(trees.GetNumberOfVertices());
     std::mt19937 random(3);
     const std::vector<std::function<double(const Point&)>> functions{
@@ -74,9 +74,8 @@ void expect_laws(vtkHyperTreeGrid& trees) {
         [&](const Point&) { return static_cast<double>(random() % 3) - 1; }};
     for (const auto& f : functions) {
         const std::vector<double> values = at_centres(grid, cells, f);
-        const CellAverages field(grid, [&](const typename HyperTreeGrid<dim>::Element& e) {
-            return values[static_cast<std::size_t>(grid.index(e))];
-        });
+        const CellAverages field(
+            grid, [&](const auto& e) { return values[static_cast<std::size_t>(grid.index(e))]; });
         expect_sound_grid(grid, field);
         expect_closed_levels(grid, field, 0.0);
     }
@@ -90,15 +89,22 @@ TEST(HyperTreeGrid, KeepsTheLaws) {
     }
 }
 
+TEST(HyperTreeGrid, KeepsTheLawsByThrees) {
+    for (const bool transposed : {false, true}) {
+        expect_laws<3, 3>(*random_trees({3, 3, 2}, 2, 1, transposed, 3));
+        expect_laws<2, 3>(*random_trees({4, 3, 1}, 4, 2, transposed, 3));
+        expect_laws<2, 3>(*random_trees({1, 4, 3}, 3, 3, transposed, 3));
+    }
+}
+
 /// Also at walls and at changes of level, on trees whose sizes differ by direction.
-template <int dim>
+template <int dim, int factor = 2>
 void expect_linear_functions(vtkHyperTreeGrid& trees) {
-    const HyperTreeGrid<dim> grid(trees);
+    const HyperTreeGrid<dim, factor> grid(trees);
     const auto values =
         at_centres(grid, static_cast<std::size_t>(trees.GetNumberOfVertices()), slanted<dim>);
-    const CellAverages field(grid, [&](const typename HyperTreeGrid<dim>::Element& e) {
-        return values[static_cast<std::size_t>(grid.index(e))];
-    });
+    const CellAverages field(
+        grid, [&](const auto& e) { return values[static_cast<std::size_t>(grid.index(e))]; });
     expect_linear_exact(grid, field);
 }
 
@@ -106,6 +112,8 @@ TEST(HyperTreeGrid, ReproducesLinearFunctions) {
     expect_linear_functions<3>(*random_trees({3, 4, 3}, 4, 1));
     expect_linear_functions<3>(*random_trees({2, 2, 2}, 5, 2));
     expect_linear_functions<2>(*random_trees({4, 3, 1}, 6, 3));
+    expect_linear_functions<3, 3>(*random_trees({3, 3, 2}, 2, 1, false, 3));
+    expect_linear_functions<2, 3>(*random_trees({4, 3, 1}, 4, 2, false, 3));
 }
 
 /// Every triangle carries the data of its cell as they are.
@@ -114,7 +122,7 @@ TEST(HyperTreeGrid, SurfacesCarryTheDataOfLeaves) {
     const HyperTreeGrid<3> grid(*trees);
     const auto cells = static_cast<std::size_t>(trees->GetNumberOfVertices());
     const auto f = [](const Point& x) { return x[0] + x[1] * x[2]; };
-    const std::vector<double> values = at_centres<3>(grid, cells, f);
+    const std::vector<double> values = at_centres(grid, cells, f);
     const CellAverages field(grid, [&](const HyperTreeGrid<3>::Element& e) {
         return values[static_cast<std::size_t>(grid.index(e))];
     });
@@ -247,6 +255,58 @@ TEST(HyperTreeGrid, HidesGhostCells) {
     expect_sound_grid(grid, averages);
 }
 
+using Triangles = std::vector<std::array<Point, 3>>;
+
+/// The triangles of what one of two processes draws, each beginning with its least corner.
+/// \param rank of the process that has the trees of that parity; of the others it has ghosts
+void draw_piece(vtkHyperTreeGrid& trees, int rank, GhostCells in_averages, Triangles& out) {
+    const vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->SetNumberOfValues(trees.GetNumberOfVertices());
+    vtkNew<vtkHyperTreeGridNonOrientedCursor> cursor;
+    for (vtkIdType i = 0; i < trees.GetMaxNumberOfTrees(); ++i) {
+        trees.InitializeNonOrientedCursor(cursor, i);
+        vtkHyperTree* const tree = cursor->GetTree();
+        const bool is_ghost = rank >= 0 && i % 2 != rank;
+        for (vtkIdType v = 0; v < tree->GetNumberOfVertices(); ++v) {
+            ghosts->SetValue(tree->GetGlobalIndexFromLocal(v),
+                             is_ghost ? vtkDataSetAttributes::DUPLICATECELL : 0);
+        }
+    }
+    trees.GetCellData()->AddArray(ghosts);
+    const HyperTreeGrid<3> all(trees, in_averages);
+    const CellAverages field(all, [&](const HyperTreeGrid<3>::Element& e) {
+        return std::sin(static_cast<double>(all.index(e)));
+    });
+    const HyperTreeGrid<3> grid(trees);
+    const HierarchicalIndicator indicator(grid, field);
+    const auto surface = isosurface(grid, field, 0.1, under(Exact{}, indicator)).surface;
+    for (const auto& s : surface.simplices) {
+        std::array<Point, 3> x{surface.vertices[s[0]], surface.vertices[s[1]],
+                               surface.vertices[s[2]]};
+        std::rotate(x.begin(), std::min_element(x.begin(), x.end()), x.end());
+        out.push_back(x);
+    }
+    trees.GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+}
+
+/// Two processes draw what one does where data of ghost cells count and levels do not change
+/// between the two; where they do not count, each sees a wall.
+TEST(HyperTreeGrid, GhostCellsCountForNodes) {
+    const vtkNew<vtkHyperTreeGrid> trees = random_trees({4, 4, 4}, 1, 1);  // all divided once
+    for (const GhostCells in_averages : {GhostCells::shown, GhostCells::hidden}) {
+        Triangles whole;
+        draw_piece(*trees, -1, in_averages, whole);
+        Triangles pieces;
+        draw_piece(*trees, 0, in_averages, pieces);
+        draw_piece(*trees, 1, in_averages, pieces);
+        std::sort(whole.begin(), whole.end());
+        std::sort(pieces.begin(), pieces.end());
+        EXPECT_GT(whole.size(), 200U);
+        EXPECT_EQ(whole == pieces, in_averages == GhostCells::shown);
+    }
+}
+
 /// No leaf is left to take a mean of.
 TEST(HyperTreeGrid, MasksMayHideEverything) {
     const vtkNew<vtkHyperTreeGrid> trees = random_trees({3, 3, 3}, 3, 1);
@@ -263,8 +323,8 @@ TEST(HyperTreeGrid, MasksMayHideEverything) {
 struct Averages {
     explicit Averages(vtkHyperTreeGrid& trees)
         : grid{trees},
-          values{at_centres<3>(grid, static_cast<std::size_t>(trees.GetNumberOfVertices()),
-                               [](const Point& x) { return x[0] + x[1] * x[1] + x[2] - 1.03; })} {}
+          values{at_centres(grid, static_cast<std::size_t>(trees.GetNumberOfVertices()),
+                            [](const Point& x) { return x[0] + x[1] * x[1] + x[2] - 1.03; })} {}
     HyperTreeGrid<3> grid;
     std::vector<double> values;
 
@@ -326,7 +386,7 @@ TEST(HyperTreeGrid, RefusesWhatItCannotRead) {
     vtkNew<vtkHyperTreeGrid> thirds;
     thirds->SetDimensions(2, 2, 2);
     thirds->SetBranchFactor(3);
-    expect_refused([&] { HyperTreeGrid<3> grid(*thirds); }, "branch factor 3");
+    expect_refused([&] { HyperTreeGrid<3> grid(*thirds); }, "branch factor 3, not 2");
 }
 
 TEST(Refusals, OfHyperTreeGrids) {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <graphs/edge_nodes.hpp>
+#include <height_fields/edge_nodes.hpp>
 
 using namespace nestgrid;
 using engine::EdgeNodes;

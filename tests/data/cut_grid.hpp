@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <span>
@@ -58,6 +59,17 @@ public:
             build(grid, context, tops[i], coarse[i].element);
     }
 
+    /// Moves all nodes, so that the grid is a curved one.
+    void curve() {
+        curved = true;
+        const auto moved = [](const Point& x) {
+            return Point{x[0] + 0.05 * std::sin(5 * x[1] + 3 * x[2]),
+                         x[1] + 0.04 * std::sin(4 * x[0] + 1), x[2] + 0.03 * x[0] * x[1]};
+        };
+        std::ranges::transform(positions, positions.begin(), moved);
+        for (Coarse& c : coarse) std::ranges::transform(c.corners, c.corners.begin(), moved);
+    }
+
     /// Gives each leaf to a rank.
     enum class Cut { in_order, in_runs, leaf_by_leaf, to_every_third };
     std::vector<int> partition(int ranks, Cut how, std::mt19937& random) const {
@@ -87,6 +99,7 @@ public:
     std::vector<NodeKey> keys;     ///< derived, by number
     std::vector<Point> positions;  ///< likewise
     std::uint32_t leaves = 0;
+    bool curved = false;  ///< the positions are not those between the corners
 
 private:
     std::uint32_t number(NodeKey key, const Point& at) {
@@ -219,7 +232,9 @@ public:
         : whole_{&whole}, part_{part}, own_keys_{own_keys} {}
 
     bool offers(Feature feature) const {
-        return feature == Feature::presence ? part_ != nullptr : own_keys_;
+        return feature == Feature::presence        ? part_ != nullptr
+               : feature == Feature::new_positions ? whole_->curved
+                                                   : own_keys_;
     }
     std::size_t coarse_count() const { return whole_->coarse.size(); }
     CoarseElement<Element> coarse(std::size_t i) const {
@@ -241,6 +256,14 @@ public:
     void corner_keys(const Element& e, std::span<NodeKey> out) const { put_keys(e, 0, out); }
     void new_keys(const Element& e, std::span<NodeKey> out) const {
         put_keys(e, topology(whole_->elements[e.at].shape).corners, out);
+    }
+    void new_positions(const Element& e, NodeMask which, std::span<Point> out) const {
+        const Whole::Element& element = whole_->elements[e.at];
+        const std::span<const std::uint32_t> nodes =
+            whole_->nodes_of(element).subspan(topology(element.shape).corners);
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            if ((which >> n & 1U) != 0) out[n] = whole_->positions[nodes[n]];
+        }
     }
     std::size_t node_count() const { return whole_->positions.size(); }
     Presence presence(const Element& e) const { return part_->presence[e.at]; }

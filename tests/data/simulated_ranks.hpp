@@ -176,8 +176,9 @@ public:
     struct Omission {
         const char* what;
         Step step;
-        int from;      ///< the first exchange, or gathering, of the step that is forgotten
-        bool gathers;  ///< gatherings are forgotten, and no exchanges
+        int from;              ///< the first exchange, or gathering, of the step that is forgotten
+        bool gathers;          ///< gatherings are forgotten, and no exchanges
+        bool reduces = false;  ///< sums and maxima are forgotten, and nothing else
     };
 
     ForgetfulRanks(Ranks& inner, const Omission& omission) : inner_{&inner}, omission_{omission} {}
@@ -185,7 +186,7 @@ public:
     /// To be called before each step of the program.
     void begin(Step step) {
         step_ = step;
-        exchanges_ = gathers_ = 0;
+        exchanges_ = gathers_ = reductions_ = 0;
     }
     int rank() const override { return inner_->rank(); }
     int size() const override { return inner_->size(); }
@@ -204,12 +205,17 @@ public:
         return all;
     }
     void reduce(std::span<std::uint64_t> numbers, Reduction how) override {
+        const std::vector<std::uint64_t> own(numbers.begin(), numbers.end());
         inner_->reduce(numbers, how);
+        if (how == Reduction::min) return;  // by which ranks agree that all go on
+        const bool forgets = step_ == omission_.step && omission_.reduces;
+        if (forgets && reductions_++ >= omission_.from) std::ranges::copy(own, numbers.begin());
     }
 
 private:
     bool forgets(bool gathers, int number) const {
-        return step_ == omission_.step && gathers == omission_.gathers && number >= omission_.from;
+        return step_ == omission_.step && !omission_.reduces && gathers == omission_.gathers &&
+               number >= omission_.from;
     }
 
     Ranks* inner_;
@@ -217,6 +223,7 @@ private:
     Step step_ = Step::none;
     int exchanges_ = 0;
     int gathers_ = 0;
+    int reductions_ = 0;
 };
 
 }  // namespace nestgrid_test

@@ -34,7 +34,7 @@ TABLE = {
         "NestgridIsosurface",
         "several in one walk": "isosurfaces a a a isosurfaces a a",
         "a series of them": "IsosurfaceSeries a a a a a a",
-        "a band between two": "isoband nestgrid_isoband a a isoband IsobandSource NestgridBand",
+        "a band between two": "isoband nestgrid_isoband band a isoband IsobandSource NestgridBand",
         "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",
         "by a sphere, a cylinder": "Sphere nestgrid_slice_along --sphere a sphere SetCutFunction Shape",
         "by any function": "LevelFunction nestgrid_slice_along --function a a SetCutFunction a",
@@ -104,7 +104,7 @@ def python_arguments(source):
 
 def public_text(source, program):
     """What each front end tells its users."""
-    commands = ["isosurface", "slice", "isolines", "height", "boundary", "probe"]
+    commands = ["isosurface", "band", "slice", "isolines", "height", "boundary", "probe"]
     run = [subprocess.run([program, c, "--help-all"], capture_output=True, text=True) for c in commands]
     helps = "\n".join(done.stdout for done in run)
     request = (source / "tools/view/frame_request.cpp").read_text()

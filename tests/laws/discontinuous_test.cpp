@@ -17,6 +17,7 @@
 #include "is_affine.hpp"
 #include "refusal.hpp"
 #include "same_surface.hpp"
+#include "thread_executor.hpp"
 
 using namespace nestgrid_test;
 
@@ -304,6 +305,62 @@ TYPED_TEST(Discontinuous, NeedsNoDeviationsAtThresholdZero) {
     });
 }
 
+/// Draws whatever the dimension allows.
+template <class Field>
+nestgrid::DiscontinuousSurface draw(
+    const Field& field, const DiscontinuousOptions& options,
+    const nestgrid::Executor& executor = nestgrid::SequentialExecutor{}) {
+    const DiscontinuousData data(*field.grid, field);
+    if constexpr (std::remove_cvref_t<decltype(*field.grid)>::dimension == 2) {
+        return height_field(data, 0.5, options, executor);
+    } else {
+        return slice(data, nestgrid::Sphere({0.5, 0.5, 0.5}, 0.3), options, executor);
+    }
+}
+
+/// No bit depends on the number of threads, nor on where the grid is cut into tasks.
+TYPED_TEST(Discontinuous, DoesNotDependOnThreads) {
+    for_each_jumping_field<TypeParam>(smooth, 0.02, [](const auto& field) {
+        for (const double threshold : {0.0, 0.03, 0.2, 1e9}) {
+            const DiscontinuousOptions options{.threshold = threshold};
+            const auto one = draw(field, options);
+            for (const std::size_t threads : {2, 5}) {
+                const auto many = draw(field, options, ThreadExecutor(threads));
+                expect_same(one.surface, many.surface);
+                EXPECT_EQ(one.error_bound, many.error_bound);
+                EXPECT_EQ(one.counts.calls, many.counts.calls);
+                EXPECT_EQ(one.counts.visited, many.counts.visited);
+                EXPECT_EQ(one.counts.extracted, many.counts.extracted);
+            }
+        }
+    });
+}
+
+/// A number of triangles is kept, at a threshold that draws the same, and the next lesser threshold
+/// exceeds it.
+TYPED_TEST(Discontinuous, KeepsANumberOfTriangles) {
+    for_each_jumping_field<TypeParam>(smooth, 0.02, [](const auto& field) {
+        const std::size_t all = draw(field, {}).surface.simplices.size();
+        const std::size_t fewest = draw(field, {.threshold = 1e9}).surface.simplices.size();
+        for (const std::size_t most : {all, (all + fewest) / 2, fewest}) {
+            if (most == 0) continue;
+            const auto drawn = draw(field, {.max_triangles = most}, ThreadExecutor(2));
+            const nestgrid::TriangleBudget& search = drawn.search;
+            EXPECT_LE(drawn.surface.simplices.size(), most);
+            EXPECT_EQ(drawn.surface.simplices.size(), search.triangles);
+            EXPECT_EQ(search.max_triangles, most);
+            expect_same(drawn.surface, draw(field, {.threshold = search.threshold}).surface);
+            if (search.end() == nestgrid::BudgetEnd::step) {
+                const double next = search.next_threshold;
+                EXPECT_GT(draw(field, {.threshold = next}).surface.simplices.size(), most);
+            }
+        }
+        if (fewest > 1) {
+            expect_refused([&] { draw(field, {.max_triangles = fewest - 1}); }, "triangles");
+        }
+    });
+}
+
 TEST(DiscontinuousCells, AreConstantOnLeavesAndLifted) {
     for (auto& grid : UnbalancedQuadtree::grids()) {
         refine_at_sphere(grid, 4);
@@ -351,6 +408,7 @@ TEST(DiscontinuousCells, RefuseWrongInput) {
     const DiscontinuousData data(grid, one);
     expect_refused([&] { shading(data, {.threshold = -1}); }, "the threshold is negative");
     expect_refused([&] { shading(data, {.flatness = NAN}); }, "the flatness is negative");
+    expect_refused([&] { shading(data, {.threshold = 1, .max_triangles = 9}); }, "not both");
     expect_refused([&] { height_field(data, INFINITY); }, "the scale of the heights is not a");
     expect_refused(
         [&] {

@@ -8,7 +8,7 @@
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/region.hpp>
 
-#include <slices/leaf_bounds.hpp>
+#include <level_sets/leaf_bounds.hpp>
 
 #include "program_judge.hpp"
 #include "sample_grids.hpp"

@@ -233,6 +233,25 @@ TEST(DistributedFaults, OwnKeysAreNotGlobal) {
                    {"ranks ", "have a node at two places under one key"});
 }
 
+TEST(DistributedFaults, PlacesOfNodesDiffer) {
+    OctreeGrid<3> grid = UnbalancedOctree::grids()[0];
+    Whole whole(grid);
+    whole.curve();
+    std::mt19937 random(1);
+    const std::vector<int> owner = whole.partition(3, Whole::Cut::in_runs, random);
+    const auto ended = SimulatedRanks::run(3, [&](Ranks& ranks) {
+        Whole own = whole;
+        if (ranks.rank() == 1) own.curve();
+        const Part part(own, owner, ranks.rank());
+        const CutGrid<3> mine(own, &part, false);
+        const Distributed on_ranks(mine, ranks);
+    });
+    for (const std::string& sentence : ended) {
+        EXPECT_NE(sentence.find("have a node at two places under one key"), std::string::npos)
+            << sentence;
+    }
+}
+
 /// What a walk knows of an element has not grown: the presence lies behind `hidden`.
 static_assert(sizeof(void*) != 8 || sizeof(Member) == sizeof(Handle) + 32);
 

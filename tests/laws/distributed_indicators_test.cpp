@@ -12,7 +12,7 @@
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 
-#include <slices/leaf_bounds.hpp>
+#include <level_sets/leaf_bounds.hpp>
 
 #include "record_judge.hpp"
 

@@ -13,7 +13,7 @@
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/triangle_budget.hpp>
 
-#include <slices/leaf_bounds.hpp>
+#include <level_sets/leaf_bounds.hpp>
 
 #include "record_judge.hpp"
 

@@ -91,13 +91,14 @@ std::vector<Request> requests_on(const Whole& whole, std::size_t count, std::mt1
 }
 
 template <class Family>
-void on_family(const char* name, Tally& all) {
+void on_family(const char* name, Tally& all, bool curved = false) {
     Tally tally;
     unsigned seed = 11;
     for (auto& grid : Family::grids()) {
         std::mt19937 random(++seed);
         refine_at_random(grid, random, 3, 4, 3, 200);
-        const Whole whole(grid);
+        Whole whole(grid);
+        if (curved) whole.curve();
         for (unsigned data = 0; data < 3; ++data) {
             auto requests = requests_on(whole, 20, random, tally);
             const Judge judge(whole, some_values(whole, ++seed), {std::move(requests)});
@@ -121,6 +122,8 @@ TEST(DistributedSlices, PiecesAreTheSliceOfOneRank) {
     on_family<RedGreenTetrahedra>("red-green tetrahedra", all);
     on_family<RedGreenMixed3>("red-green mixed, 3-D", all);
     on_family<BisectionTetrahedra>("bisected tetrahedra", all);
+    on_family<BalancedOctree>("curved octrees", all, true);
+    on_family<RedGreenTetrahedra>("curved red-green tetrahedra", all, true);
     std::printf("slices on ranks: %llu functions, of them %llu through nodes, %llu surfaces\n",
                 static_cast<unsigned long long>(all.functions),
                 static_cast<unsigned long long>(all.through_nodes),

@@ -93,7 +93,7 @@ Mark in_two_directions(const Leaf& leaf) {
 }
 
 template <class Family, class Mark_>
-void on_family(const char* name, const Mark_& mark, Runs& all) {
+void on_family(const char* name, const Mark_& mark, Runs& all, bool curved = false) {
     constexpr int dim = Family::Grid::dimension;
     const unsigned cuttings = is_long() ? 60 : 9;
     Runs runs;
@@ -102,7 +102,8 @@ void on_family(const char* name, const Mark_& mark, Runs& all) {
     for (auto& grid : Family::grids()) {
         std::mt19937 random(++seed);
         refine<Family>(grid, random, dim == 3 ? 250 : 100, mark);
-        const Whole whole(grid);
+        Whole whole(grid);
+        if (curved) whole.curve();
         leaves += whole.leaves;
         for (const Data data : all_data) {
             ++seed;
@@ -141,6 +142,9 @@ TEST(Distributed, PiecesAreTheSurfaceOfOneRank) {
     on_family<RedGreenTriangles>("red-green triangles", in_all_directions, all);
     on_family<RedGreenMixed2>("red-green mixed, 2-D", in_all_directions, all);
     on_family<BisectionTriangles>("bisected triangles", in_all_directions, all);
+    on_family<UnbalancedOctree>("curved octrees", in_all_directions, all, true);
+    on_family<RedGreenMixed3>("curved red-green, mixed, 3-D", in_all_directions, all, true);
+    on_family<BisectionTriangles>("curved bisected triangles", in_all_directions, all, true);
     std::printf("surfaces drawn by ranks and compared: %llu\n",
                 static_cast<unsigned long long>(all.surfaces));
     EXPECT_GE(all.surfaces, is_long() ? 20000U : 3000U);

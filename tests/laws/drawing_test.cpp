@@ -99,6 +99,50 @@ TYPED_TEST(Drawing, HasTheBitsOfItsParts) {
     });
 }
 
+/// Draws within half the number of all simplices, where the coarsest drawing has no more.
+/// \param draw draw(projection)
+/// \param count count(drawn)
+template <class Draw, class Count>
+void expect_within_half(const Draw& draw, const Count& count) {
+    const std::size_t most =
+        std::max(count(draw({.threshold = 0})) / 2, count(draw({.threshold = 1e9})));
+    if (most == 0) return;
+    const auto drawn = draw({.max_triangles = most});
+    EXPECT_LE(count(drawn), most);
+    EXPECT_EQ(count(drawn), drawn.search.triangles);
+    // Without a search, threshold 0 stops nowhere: also not where nothing is left out.
+    if (drawn.search.threshold > 0) {
+        EXPECT_EQ(count(drawn), count(draw({.threshold = drawn.search.threshold})));
+    }
+    if (drawn.search.end() != BudgetEnd::step) return;
+    EXPECT_GT(count(draw({.threshold = drawn.search.next_threshold})), most);
+}
+
+/// A number of triangles is one of all levels together.
+TYPED_TEST(Drawing, KeepsOneNumberOfSeveralLevels) {
+    for_each_drawn<TypeParam>(47, [](const auto&, Prerolls& prerolls, auto dimension) {
+        expect_within_half(
+            [&](const Projection& projection) {
+                return isoband<dimension>(prerolls, -0.1, 0.1, projection);
+            },
+            [](const auto& band) { return band.surface.simplices.size(); });
+        if constexpr (dimension == 2) {
+            const std::vector<double> values{-0.2, 0, 0.1};
+            expect_within_half(
+                [&](const Projection& projection) {
+                    return isolines(prerolls, values, projection);
+                },
+                [](const auto& drawn) {
+                    std::size_t segments = 0;
+                    for (std::size_t i = 0; i < drawn.lines.count(); ++i) {
+                        segments += drawn.lines.line(i).size() - 1;
+                    }
+                    return segments;
+                });
+        }
+    });
+}
+
 TYPED_TEST(Drawing, IsFineInARegion) {
     const Ball ball{{0.4, 0.4, 0.4}, 0.2};
     const double zero = 0;

@@ -32,6 +32,25 @@ done
 refused 1 'even the coarsest surface has more than 2000' boundary v.vti --max-triangles 2000
 grep -q 'Name="value"' b.vtp || fail "the field is no array of its own name"
 for array in level element; do grep -q "Name=\"$array\"" b.vtp && fail "$array is in b.vtp, where nobody asks for it"; done
+# A band is its two isosurfaces in one walk; one number of triangles is for both.
+areas=0
+for level in 100 130; do
+    run isosurface v.vti --value $level --threshold 2
+    areas=$(value area | awk -v sum="$areas" '{ print sum + $1 }')
+done
+run band v.vti --low 100 --high 130 --threshold 2 -o band.vtp
+awk -v a="$(value area)" -v b="$areas" 'BEGIN { exit !((a - b)^2 <= 1e-9 * b^2) }' || fail "band: $(value area), not $areas"
+expect open_edges 0
+expect upper_isovalue 130
+run band v.vti --low 100 --high 130 --max-triangles 3000
+[ "$(value triangles)" -le 3000 ] && [ "$(value triangles)" -gt 2500 ] || fail "band: $(cat out)"
+for band in '900 901 outside' '1 9.5 outside' '1 900 holds'; do
+    set -- $band
+    run band v.vti --low $1 --high $2
+    grep -q "^the surface is empty: the band .*$3 the range 10 to 250 of the data" out || fail "band $band: $(cat out)"
+done
+refused 1 'low is not below --high' band v.vti --low 130 --high 100 -o none.vtp
+[ ! -e none.vtp ] || fail "none.vtp of a refused band"
 run slice v.vti --sphere 4.75,11.5,17,4 --cap
 run slice v.vti --cylinder 4.75,11.5,17,0,0,1,3 -o c.ply
 [ -s c.ply ] || fail "no c.ply"

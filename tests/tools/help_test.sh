@@ -24,7 +24,7 @@ for command in "" $commands; do
     [ "$(names short)" = "$(names all)" ] || fail "$command --help does not name all options"
     grep -qx 'Examples:' short && grep -q "^  nestgrid $command" short || fail "$command has no example"
     case $command in
-    isosurface | slice | isolines | height | surface | boundary)
+    isosurface | band | slice | isolines | height | surface | boundary)
         [ "$(grep -c 'error_bound' short)" = 1 ] || fail "$command --help does not explain error_bound"
         ;;
     esac

@@ -46,7 +46,7 @@ for command in "${iso[*]}" "slice v.vti --axis z --at 17" "boundary v.vti" "isol
     "$program" $command --threshold 1 --threshold 2 | grep -qE '^in all: 2 surfaces, [0-9,]+ triangles, ' || fail "$command: no sum"
 done
 # The same facts and columns, whatever is drawn.
-for command in "${iso[*]}" "slice v.vti --axis z --at 17" "boundary v.vti" "isolines v.vti --axis z --at 17 --count 3" \
+for command in "${iso[*]}" "band v.vti --low 100 --high 130" "slice v.vti --axis z --at 17" "boundary v.vti" "isolines v.vti --axis z --at 17 --count 3" \
     "isolines v.vti --on-surface 130 --by x --count 3" "surface ramp.pgm" "height ramp.pgm --scale 1"; do
     ask "{'nodes', 'leaf_elements', 'preroll_kept_bytes', 'read_seconds', 'least_value'} <= d.keys() and {'triangles',
         'vertices', 'error_bound', 'open_edges', 'area', 'seconds', 'boundary_edges', 'inspect_calls', 'search_trials',

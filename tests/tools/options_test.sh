@@ -91,8 +91,8 @@ for ((i = 0; i < 18; ++i)); do head -c 240 /dev/zero | tr '\0' '\1' && head -c 2
 frames='a.raw b.raw --dims 20,24,16 --type uint8'
 
 declare -A base=([isosurface]='--value 130' [slice]='--axis z --at 9' [isolines]='--axis z --at 9 --count 3'
-    [boundary]='' [probe]='--line 0,0,0,9,17,11 --count 7' [info]='')
-for command in isosurface slice isolines boundary probe info; do
+    [band]='--low -9 --high 130' [boundary]='' [probe]='--line 0,0,0,9,17,11 --count 7' [info]='')
+for command in isosurface band slice isolines boundary probe info; do
     options=${base[$command]}
     keep='-o kept/x.vtp'
     [ $command = probe ] && keep='-o kept/x.csv'
@@ -166,7 +166,7 @@ void info 'chooses nothing' two.nestgrid --array x
 refused 1 'no point data array' info v.vti --array none && echo "info --array" >>covered
 
 # What is drawn.
-for command in isosurface slice isolines boundary; do
+for command in isosurface band slice isolines boundary; do
     effect $command "$raw ${base[$command]}" --max-triangles 3000
     void $command 'is for standard output' "$raw ${base[$command]}" --output-format ply
     echo "$command --output-format" >>covered
@@ -177,7 +177,7 @@ for command in isosurface slice isolines boundary; do
         grep -q 'Name="element"' kept/x.vtp && grep -q 'Name="level"' kept/x.vtp || fail "$command --elements: no arrays"
         void $command 'elements is for an --output as .vtp' "$raw ${base[$command]} -o kept/x.ply" --elements
         void $command 'elements is for an --output as .vtp' "$raw ${base[$command]}" --elements
-        refused 2 'excludes' $command $raw ${base[$command]} --error 30 --collapse --elements -o x.vtp
+        [ $command = band ] || refused 2 'excludes' $command $raw ${base[$command]} --error 30 --collapse --elements -o x.vtp
     fi
     for option in '--threshold 1' '--max-triangles 900' '--indicator visual'; do
         refused 2 'error excludes|excludes --error' $command $raw ${base[$command]} --error 30 $option
@@ -189,6 +189,9 @@ for command in isosurface slice isolines boundary; do
     refused 1 'threads is negative' $command $raw ${base[$command]} --threads -1
     echo "$command --threads" >>covered
 done
+differ band --low "$raw --low -9 --high 130" "$raw --low 50 --high 130"
+differ band --high "$raw --low 50 --high 130" "$raw --low 50 --high 120"
+effect band "$raw ${base[band]} -o kept/x.vtp" --no-normals
 effect isosurface "$raw ${base[isosurface]}" --distance 0.5
 for option in '--threshold 1' '--max-triangles 900' '--error 5' '--indicator visual'; do
     refused 2 'distance excludes|excludes --distance' isosurface $raw --value 130 --distance 1 $option
@@ -368,7 +371,7 @@ effect pack "$pack" --encode
 effect pack "$pack" --encode-within 0.1
 for name in output json; do echo "pack --$name" >>covered; done
 
-for command in isosurface slice isolines height surface boundary probe info mesh pack; do
+for command in isosurface band slice isolines height surface boundary probe info mesh pack; do
     "$program" $command --help-all >help-all
     for option in $(grep -oE -e '^  (-.,)?--[a-z-]+' help-all | grep -oE -e '--[a-z-]+'); do
         case $option in --help | --help-all) continue ;; esac

@@ -51,6 +51,39 @@ run isosurface solution.vtu --field u --value 0.3 --error 0.1 --error 0.01 -o tw
 run isosurface solution.vtu --field u --value 0.3 --cap --error 0.05 -o s.vtp
 [ "$(value boundary_edges)" = 0 ] || fail "a cap leaves $(value boundary_edges) edges"
 
+# Within a number of triangles: the error that is found is kept, and draws the same.
+# at_most NUMBER WHAT: so many triangles of all surfaces, within the threshold.
+at_most() {
+    total=0
+    for count in $(value triangles) $(value isosurface_triangles); do
+        total=$((total + ${count//,/}))
+    done
+    [ "$total" -gt 0 ] && [ "$total" -le "$1" ] || fail "$2: $total triangles: $(cat out)"
+    within "$(value threshold | sort -u)" "$2"
+}
+for number in 1000 20000; do
+    run isosurface solution.vtu --field u --value 0.3 --max-triangles $number -o budget.vtp
+    at_most $number isosurface
+    [ "$total" -gt $((number * 8 / 10)) ] || fail "few of $number triangles: $(cat out)"
+    run slice solution.vtu --field u --axis z --at 0.4 --max-triangles $number -o c.vtp
+    at_most $number slice
+    run height plane.vtu --field u --scale 1 --max-triangles $number -o h.vtp
+    at_most $number height
+done
+run isosurface solution.vtu --field u --value 0.3 --max-triangles 1000 --max-triangles 3000
+[ "$(value triangles | wc -l)" = 2 ] || fail "two numbers: $(cat out)"
+run slice solution.vtu --field u --axis z --at 0.4 --with-isosurface 0.3 --max-triangles 3000 -o c.vtp
+at_most 3000 "slice with an isosurface"
+
+# In a lens, beside an error and alone.
+run isosurface solution.vtu --field u --value 0.3 --error 0.1 -o s.vtp
+without=$(value triangles | tr -d ,)
+run isosurface solution.vtu --field u --value 0.3 --error 0.1 --lens ball:0.35,0.6,0.7,0.1 --finest 0.02 -o s.vtp
+within 0.1 "a lens"
+[ "$(value triangles | tr -d ,)" -gt $((2 * without)) ] || fail "a lens is as coarse: $(cat out)"
+run isosurface solution.vtu --field u --value 0.3 --lens ball:0.35,0.6,0.7,0.1 --finest 0.02 -o s.vtp
+grep -q 'drawn as finely as the lens asks$' out && [ "$(value open_edges)" = 0 ] || fail "a lens alone: $(cat out)"
+
 # Without an error.
 run isosurface solution.vtu --field u --value 0.3
 grep -q 'about a thousandth of their range: --error chooses another$' out || fail "no word on the error: $(cat out)"
@@ -71,9 +104,10 @@ refused 1 "there are several fields, choose one by --field: 'u', 'radius'" isosu
 refused 1 "there is no field 'radios', only 'u', 'radius': did you mean 'radius'\?" \
     isosurface solution.vtu --field radios --value 0.3
 refused 1 'no threshold of nodes' isosurface solution.vtu --field u --value 0.3 --threshold 0.1 -o x.vtp
-refused 1 'no number of triangles' isosurface solution.vtu --field u --value 0.3 --max-triangles 100 -o x.vtp
+refused 1 'even the coarsest surface has more than 3 triangles' \
+    isosurface solution.vtu --field u --value 0.3 --max-triangles 3 -o x.vtp
 refused 1 'no collapse of edges' isosurface solution.vtu --field u --value 0.3 --error 0.1 --collapse -o x.vtp
-refused 1 'no lens' isosurface solution.vtu --field u --value 0.3 --lens ball:0.5,0.5,0.5,0.1 --finest 0.1 -o x.vtp
+refused 1 '0 < finest <= coarsest' isosurface solution.vtu --field u --value 0.3 --lens ball:0.5,0.5,0.5,0.1 -o x.vtp
 refused 1 'are for fields of degree 1' isosurface solution.vtu --field u --value 0.3 --error 0.1 --measure -o x.vtp
 refused 1 "below 1e-12 of the range" isosurface solution.vtu --field u --value 0.3 --error 1e-15 -o x.vtp
 refused 1 "no frame of several" isosurface solution.vtu solution.vtu --field u --value 0.3 --frames 2 -o x.vtp

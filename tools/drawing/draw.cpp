@@ -125,7 +125,7 @@ private:
             field_.greatest = greatest;
         }
         if (request_.isovalue && field_.surfaces.empty()) {
-            field_.outside = outside_range(*request_.isovalue, least, greatest);
+            field_.outside = why_empty(request_, least, greatest);
         }
         // The range of all surfaces is known too late for a film: that of the frames takes its
         // place.

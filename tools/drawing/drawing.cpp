@@ -8,6 +8,7 @@
 
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
+#include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
 #include <nestgrid/error.hpp>
 
@@ -134,10 +135,16 @@ private:
         const bool searches = projection.max_triangles > 0;
         const auto options = isosurface_options(searches || executor_.concurrency() == 1);
         if (prerolls().field().dimension() == 3) {
-            return take(drawn,
-                        nestgrid::isosurface<3>(prerolls(), isovalue, projection, options, work));
+            return take(drawn, request_.upper
+                                   ? isoband<3>(prerolls(), isovalue, *request_.upper, projection,
+                                                options, work)
+                                   : nestgrid::isosurface<3>(prerolls(), isovalue, projection,
+                                                             options, work));
         }
-        auto lines = nestgrid::isosurface<2>(prerolls(), isovalue, projection, options, work);
+        auto lines =
+            request_.upper
+                ? isoband<2>(prerolls(), isovalue, *request_.upper, projection, options, work)
+                : nestgrid::isosurface<2>(prerolls(), isovalue, projection, options, work);
         take_facts(drawn, lines);
         drawn.segments = std::move(lines.surface);
         drawn.result = {lines, {}, lines.counts};
@@ -167,6 +174,16 @@ private:
     }
     nestgrid::TriangleBudget find_both(const nestgrid::SliceRequest& both,
                                        std::uint64_t max_triangles, const Work& work) const {
+        if (const std::shared_ptr<const nestgrid::HighOrder> data = moment_.high_order()) {
+            return nestgrid::least_threshold(
+                [&](double error, std::uint64_t most) {
+                    return count_triangles(
+                        prerolls(), both,
+                        {.threshold = error, .indicator = "error", .lens = request_.lens}, most, {},
+                        {work.executor});
+                },
+                nestgrid::default_error(*data), max_triangles, data->least_tolerance());
+        }
         const nestgrid::Criteria& criteria = moment_.criteria();
         const nestgrid::Bounds& bounds = criteria.bounds();
         return nestgrid::least_threshold(
@@ -234,9 +251,9 @@ private:
 /// \throw nestgrid::InvalidInput where options ask for more than an error
 void require_error_alone(const DrawingRequest& request, const SurfaceOptions& options, int degree) {
     nestgrid::Projection projection = options.projection;
-    const bool is_asked = !options.thresholds.empty() || !options.budgets.empty();
-    if (!is_asked && !request.lens) projection.indicator = "error";
-    projection.max_triangles = options.budgets.empty() ? 0 : 1;
+    if (options.thresholds.empty() && projection.indicator == "offset") {
+        projection.indicator = "error";
+    }
     projection.lens = request.lens;
     projection.collapse = request.collapses;
     projection.keeps_distance = request.keeps_distances;
@@ -246,21 +263,28 @@ void require_error_alone(const DrawingRequest& request, const SurfaceOptions& op
     }
 }
 
-/// Draws a field of higher degree within each error.
+/// Draws a field of higher degree within each error, or each number of triangles.
 void draw_polynomials(const nestgrid::HighOrder& data, const Moment& moment,
-                      const SurfaceOptions& options, const Drawing& drawing,
-                      const std::function<void(Drawn&&)>& take) {
-    std::vector<double> errors;
-    for (const std::string& text : options.thresholds) {
-        errors.push_back(moment.error(parse_threshold(text)));
+                      const SurfaceOptions& options, const DrawingRequest& request,
+                      const Drawing& drawing, const std::function<void(Drawn&&)>& take) {
+    const Projection within{.indicator = "error", .lens = request.lens};
+    std::vector<Projection> asked;
+    for (const std::int64_t budget : options.budgets) {
+        asked.push_back(within);
+        asked.back().max_triangles = static_cast<std::uint64_t>(budget);
     }
-    const bool by_default = errors.empty();
-    if (by_default) errors.push_back(nestgrid::default_error(data));
-    for (const double error : errors) {
+    for (const std::string& text : options.thresholds) {
+        asked.push_back(within);
+        asked.back().threshold = moment.error(parse_threshold(text));
+    }
+    const bool by_default = asked.empty() && !request.lens;
+    if (asked.empty()) asked.push_back(within);
+    if (by_default) asked.back().threshold = nestgrid::default_error(data);
+    for (const Projection& projection : asked) {
         Drawn drawn;
         drawn.by_default = by_default;
         drawn.degree = data.greatest_degree();
-        take(drawing.draw({.threshold = error, .indicator = "error"}, std::move(drawn)));
+        take(drawing.draw(projection, std::move(drawn)));
     }
 }
 
@@ -277,7 +301,7 @@ void draw_moment(const Moment& moment, const nestgrid::Executor& executor,
     const Drawing drawing(moment, executor, options, request, tell);
     if (const std::shared_ptr<const nestgrid::HighOrder> data = moment.high_order()) {
         require_error_alone(request, options, data->greatest_degree());
-        return draw_polynomials(*data, moment, options, drawing, take);
+        return draw_polynomials(*data, moment, options, request, drawing, take);
     }
     if (is_drawn_exactly(request, options)) return take(drawing.draw({}, {}));
     moment.criteria();  // what they cost is that of the preroll

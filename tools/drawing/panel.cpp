@@ -168,7 +168,7 @@ vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, const Drawn& d, const D
         data = append->GetOutput();
     }
     std::map<std::string, double> values;
-    if (request.in_one_colour()) values[field.input_name] = *request.isovalue;
+    if (request.in_one_colour() && !request.upper) values[field.input_name] = *request.isovalue;
     if (d.label) values["label"] = *d.label;
     describe(data, field.length_unit, field.space, values);
     return data;

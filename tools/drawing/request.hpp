@@ -34,6 +34,8 @@ struct DrawingRequest {
     const nestgrid::LevelFunction* function = nullptr;
     /// The isosurface with this value: without a slice, or beside it and in the same walk.
     std::optional<double> isovalue{};
+    /// The surface around the band between the isovalue and this one, in its place.
+    std::optional<double> upper{};
     /// What colours an isosurface without a slice; empty for one colour.
     std::string by{};
     double scale = 0;       ///< heights of a grid of dimension 2, in multiples of the field

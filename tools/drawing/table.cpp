@@ -104,6 +104,7 @@ void report_facts(const DrawnField& field, const DrawingRequest& request, Report
     report_field(field.name, field.length_unit, report);
     report_range({field.least, field.greatest}, report);
     if (request.isovalue) report.add("isovalue", *request.isovalue);
+    if (request.upper) report.add("upper_isovalue", *request.upper);
     report.add("nodes", std::uint64_t{field.nodes});
     report.add("leaf_elements", std::uint64_t{field.leaf_elements});
     if (field.preroll_seconds > 0) {
@@ -159,10 +160,15 @@ void say_what_is_promised(const Drawn& d, Report& report) {
 /// How a field of higher degree was drawn.
 void say_how_finely(const Drawn& d, Report& report) {
     std::array<char, 160> text{};
-    std::snprintf(
-        text.data(), text.size(), "drawn within %.4g of polynomials of degree %d%s", d.threshold,
-        d.degree,
-        d.by_default ? ", about a thousandth of their range: --error chooses another" : "");
+    if (std::isinf(d.threshold)) {
+        std::snprintf(text.data(), text.size(),
+                      "polynomials of degree %d, drawn as finely as the lens asks", d.degree);
+    } else {
+        std::snprintf(
+            text.data(), text.size(), "drawn within %.4g of polynomials of degree %d%s",
+            d.threshold, d.degree,
+            d.by_default ? ", about a thousandth of their range: --error chooses another" : "");
+    }
     report.say(text.data());
     if (d.result.counts.limited == 0) return;
     report.say(grouped(d.result.counts.limited) +
@@ -172,12 +178,17 @@ void say_how_finely(const Drawn& d, Report& report) {
 
 }  // namespace
 
-std::string outside_range(double isovalue, double least, double greatest) {
-    const auto texts = distinct_texts({isovalue, least, greatest});
-    if (least == greatest) return "the data have the value " + texts[1] + " everywhere";
-    if (isovalue >= least && isovalue <= greatest) return "";
-    return "the isovalue " + texts[0] + " is outside the range " + texts[1] + " to " + texts[2] +
-           " of the data";
+std::string why_empty(const DrawingRequest& request, double least, double greatest) {
+    const double low = *request.isovalue;
+    const double high = request.upper.value_or(low);
+    const auto texts = distinct_texts({low, high, least, greatest});
+    const std::string range = "the range " + texts[2] + " to " + texts[3] + " of the data";
+    if (least == greatest) return "the data have the value " + texts[2] + " everywhere";
+    if (request.upper && low < least && high > greatest) return "the band holds " + range;
+    if (high >= least && low <= greatest) return "";
+    const std::string what =
+        request.upper ? "the band " + texts[0] + " to " + texts[1] : "the isovalue " + texts[0];
+    return what + " is outside " + range;
 }
 
 void report_drawn(const DrawnField& field, const DrawingRequest& request, Report& report) {
@@ -203,6 +214,7 @@ void report_drawn(const DrawnField& field, const DrawingRequest& request, Report
         return (request.has_two_surfaces() ? d.isosurface_report : d.report).triangles == 0;
     });
     if (empty && !field.outside.empty()) {
-        report.say("the isosurface is empty: " + field.outside);
+        report.say((request.upper ? "the surface is empty: " : "the isosurface is empty: ") +
+                   field.outside);
     }
 }

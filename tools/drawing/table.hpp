@@ -4,8 +4,9 @@
 
 #include "drawing/request.hpp"
 
-/// Why a value has no isosurface, or nothing where it lies within the range of the data.
-std::string outside_range(double isovalue, double least, double greatest);
+/// Why a value has no isosurface, or a band no surface; nothing where the range of the data lets
+/// them have one.
+std::string why_empty(const DrawingRequest& request, double least, double greatest);
 
 /// Facts about the field, one row of the table "surfaces" for each surface and one of "isolines"
 /// for each of their values, and sentences about what is promised and what is empty.

@@ -6,6 +6,13 @@
 #include <span>
 
 #include <nestgrid/grid.hpp>
+#include <nestgrid/shape.hpp>
+
+template <class Field>
+concept HasGradients = requires(const Field& field, const typename Field::Element& e,
+                                std::span<nestgrid::Point> out) {
+    field.corner_gradients(e, out);
+};
 
 /// Two fields of one component each, on one grid, as the components of one field.
 template <class Field>
@@ -32,6 +39,11 @@ public:
                 return field.new_values(e, which, values);
             }
         });
+    }
+    /// Of the first field, where it has gradients of its own.
+    void corner_gradients(const Element& e,
+                          std::span<nestgrid::Point> out) const requires HasGradients<Field> {
+        fields_[0].corner_gradients(e, out);
     }
 
 private:

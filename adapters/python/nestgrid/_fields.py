@@ -247,6 +247,7 @@ class Field:
         low: float,
         high: float,
         threshold: float | None = None,
+        max_triangles: int | None = None,
         *,
         indicator: SurfaceIndicator = "offset",
         blend: float = 1,
@@ -265,7 +266,7 @@ class Field:
         It is open on the boundary of the domain only. Raises InvalidInput also unless low < high,
         and for a field of dimension 2.
         """
-        projection = projection_of(threshold, None, indicator, blend, lens, error, region)
+        projection = projection_of(threshold, max_triangles, indicator, blend, lens, error, region)
         options = (low, high, normals, elements)
         return Surface._of(_nestgrid.isoband(self._source, *options, projection, threads), self)
 
@@ -371,6 +372,7 @@ class Field:
         self,
         values: float | Iterable[float] | np.ndarray,
         threshold: float | None = None,
+        max_segments: int | None = None,
         *,
         indicator: Indicator = "offset",
         blend: float = 1,
@@ -381,11 +383,12 @@ class Field:
     ) -> Lines:
         """Lines on which a two-dimensional field has the given values, in one pass.
 
-        values  one number or several, in the units of the data
+        values        one number or several, in the units of the data
+        max_segments  the least threshold at which all lines together have so many segments
 
         Raises InvalidInput also for a field of dimension 3: its slices have isolines().
         """
-        projection = projection_of(threshold, None, indicator, blend, lens, error, region)
+        projection = projection_of(threshold, max_segments, indicator, blend, lens, error, region)
         return Lines._of(
             _nestgrid.isolines(self._source, several(values), projection, threads), self
         )

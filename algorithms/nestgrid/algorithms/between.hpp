@@ -27,7 +27,7 @@
 
 namespace nestgrid {
 
-/// Offers gradients and rows of values where the frames do.
+/// Offers gradients, rows of values, and polynomials of leaves where the frames do.
 template <class Field>
 class Between {
 public:
@@ -83,6 +83,34 @@ public:
                     out[k][d] = std::fma(term.weight, of_frame[k][d], out[k][d]);
                 }
             }
+        }
+    }
+    /// The greatest degree of the frames that count: their sum has no greater one.
+    template <class Element, class Context>
+    int degree(const Element& leaf, Context& context)
+        const requires detail::offers_degree<Field, Context, const Element&> {
+        int greatest = 1;
+        for (const Term& term : terms_) {
+            const int degree = static_cast<int>(detail::call_degree(*term.field, context, leaf));
+            if (degree < 1) return degree;  // which is refused
+            greatest = std::max(greatest, degree);
+        }
+        return greatest;
+    }
+    template <class Element, class Context>
+    void evaluate(const Element& leaf, std::span<const Point> reference, std::span<value_type> out,
+                  Context& context)
+        const requires detail::offers_evaluate<Field, Context, const Element&,
+                                               std::span<const Point>, std::span<value_type>> {
+        constexpr std::size_t points = room_ / stride_;
+        for (std::size_t begin = 0; begin < reference.size(); begin += points) {
+            const auto places =
+                reference.subspan(begin, std::min(points, reference.size() - begin));
+            const auto part = out.subspan(begin * stride_, places.size() * stride_);
+            add_frames(~NodeMask{0}, part, [&](const Field& field, std::span<value_type> values) {
+                detail::call_evaluate(field, context, leaf, places, values);
+                return NodeMask{0};
+            });
         }
     }
     bool knows_stars() const requires KnowsRows<Field> {

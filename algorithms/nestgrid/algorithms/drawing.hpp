@@ -28,7 +28,9 @@ namespace nestgrid {
 double default_error(const HighOrder& data);
 
 /// The projection by which a front end draws a field: this one, but of a field of higher degree
-/// always one within an error, which is default_error() where the projection asks for nothing.
+/// always one within an error. That is default_error() where the projection asks for nothing, the
+/// least one with its number of triangles where it asks for such a number by offsets, and any error
+/// where a lens decides alone.
 ///
 /// \throw InvalidInput as Projection::require_error_alone(), and as HighOrder
 Projection with_error(const Prerolls& prerolls, Projection projection, const Work& work = {});

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/projection.hpp>
 
 namespace nestgrid {
 namespace engine {
@@ -32,6 +33,10 @@ public:
     int greatest_degree() const;
     /// How far leaves are apart on edges and faces that they share: rounding in a continuous field.
     double jump() const;
+    /// The tolerance at which the most curved leaf is flat at the depth limit, if it is halved as
+    /// often as VirtualOptions::depth is by default. Below it more and more elements meet the
+    /// limit; budgets of triangles end there.
+    double least_tolerance() const;
     std::size_t memory_bytes() const;
 
 private:
@@ -50,6 +55,9 @@ private:
 struct VirtualOptions {
     double tolerance = 0;  ///< in the units of the data; at least 1e-12 of their range
     int depth = 8;         ///< leaves are halved at most this many times, 1 to 16
+    /// Elements stop only where they are as small as the lens asks, too, or at the depth limit. Its
+    /// `finest` is positive.
+    std::optional<LensRequest> lens{};
 };
 
 /// Leaves halved until what is drawn is within the tolerance, or at the depth limit

@@ -15,9 +15,10 @@ void append_reversed(Surface<dimension>& to, const Surface<dimension>& from);
 
 /// The surface around low <= U < high inside the domain, in one traversal. Where both level sets
 /// keep away from the boundary of the domain it is closed, and encloses volume_between().
-/// \return counts and the larger error bound of the two level sets
+/// \return counts and the larger error bound of the two level sets; a number of triangles is one of
+///         both together
 /// \throw InvalidInput also unless low < high, for options.cap: caps of bands are not made; for
-///        collapses and for a number of triangles
+///        collapses
 template <int dimension>
 Projected<Isosurface<dimension>> isoband(const Prerolls& prerolls, double low, double high,
                                          const Projection& projection = {},

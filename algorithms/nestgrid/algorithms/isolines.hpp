@@ -22,10 +22,11 @@ struct Isolines : ErrorBounds {
 };
 
 /// The isolines of component 0 of a field of dimension 2, in one traversal. They end on the
-/// boundary of the domain only. Vertices carry components 1 ... of the field. \param options as of
-/// isosurface(); normals, elements and references are not kept \throw InvalidInput also where a
-/// value is not a number, for collapses, and for a number of
-///        triangles: a limit of segments is for one isoline
+/// boundary of the domain only. Vertices carry components 1 ... of the field. A number of triangles
+/// is one of segments, of all lines together.
+/// \param options as of isosurface(); normals, elements and references are not kept
+///
+/// \throw InvalidInput also where a value is not a number, and for collapses
 Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> values,
                              const Projection& projection = {},
                              const IsosurfaceOptions& options = {}, const Work& work = {});

@@ -91,8 +91,8 @@ public:
         std::shared_ptr<const SweptIndicator> sizes(const Spread& spread, const Work& work) const;
 
         /// The polynomials of the field (high_order.hpp), within an error of which it is drawn;
-        /// null where all are of degree 1, and between frames. Work that has a field of its own has
-        /// them made anew.
+        /// null where all are of degree 1. Between frames they are made for each time. Work that
+        /// has a field of its own has them made anew.
         ///
         /// \throw InvalidInput, GridError as HighOrder
         std::shared_ptr<const HighOrder> high_order(const Work& work) const;

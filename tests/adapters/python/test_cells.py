@@ -90,6 +90,33 @@ def test_a_thousandth_of_the_range_is_the_error_unless_one_is_given():
     assert surface.error_bound <= surface.threshold * (1 + 1e-6)
 
 
+def test_budgets_are_kept_by_the_least_error():
+    mesh = box(3, 3, 3)
+    field = nestgrid.Cells(*mesh, waves(mesh[0]))
+    for most in (1000, 10_000):
+        surface = field.isosurface(0.4, max_triangles=most)
+        assert most * 0.8 < len(surface.triangles) <= most
+        assert surface.error_bound <= surface.threshold * (1 + 1e-6)
+        assert surface.report()["open_edges"] == 0
+        again = field.isosurface(0.4, error=surface.threshold)
+        np.testing.assert_array_equal(surface.vertices, again.vertices)
+        drawn = field.slice(plane=((0.5, 0.5, 0.41), (0.2, 0.1, 1)), max_triangles=most)
+        assert most * 0.7 < len(drawn.triangles) <= most
+    with pytest.raises(nestgrid.InvalidInput, match="even the coarsest surface has more than 2 triangles"):
+        field.isosurface(0.4, max_triangles=2)
+
+
+def test_lenses_ask_for_small_elements():
+    mesh = box(3, 3, 3)
+    field = nestgrid.Cells(*mesh, waves(mesh[0]))
+    plain = field.isosurface(0.4, error=0.05)
+    lens = nestgrid.Lens(nestgrid.ball((0.5, 0.5, 0.5), 0.2), finest=0.02)
+    fine = field.isosurface(0.4, error=0.05, lens=lens)
+    assert len(fine.triangles) > 2 * len(plain.triangles)
+    assert fine.report()["open_edges"] == 0
+    assert fine.error_bound <= 0.05 * (1 + 1e-6)
+
+
 def test_isolines_and_height_fields():
     mesh = box(2, 3, 3)
     field = nestgrid.Cells(*mesh, waves(mesh[0]))
@@ -141,7 +168,7 @@ def test_refusals_name_what_is_wrong(tmp_path):
     points, types, offsets, connectivity = box(3, 2, 2)
     values = waves(points)
     good = nestgrid.Cells(points, types, offsets, connectivity, values)
-    for arguments in ({"threshold": 0.1}, {"max_triangles": 100}, {"error": 0.1, "collapse": True}):
+    for arguments in ({"threshold": 0.1}, {"error": 0.1, "collapse": True}, {"max_triangles": 100, "collapse": True}):
         with pytest.raises(nestgrid.InvalidInput, match="the field has degree 2"):
             good.isosurface(0.4, **arguments)
     with pytest.raises(nestgrid.InvalidInput, match="cell 3 is of VTK's type 42"):

@@ -54,13 +54,10 @@ auto BlockCells<dim, Real>::hangs_on(const Around& around, const Place& node) co
 }
 
 template <int dim, class Real>
-template <class ValueAt>
-double BlockCells<dim, Real>::interpolant(const BlockCell<dim>& leaf, const Place& node,
-                                          const ValueAt& at) const {
+template <class Use>
+void BlockCells<dim, Real>::for_each_weight(const BlockCell<dim>& leaf, const Place& node,
+                                            const Use& use) const {
     const std::int32_t extent = reader_.grid().extent(static_cast<std::size_t>(leaf.level));
-    double sum = 0;
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
     for (std::size_t k = 0; k < std::size_t{1} << size_; ++k) {
         double weight = 1;
         Place corner = leaf.low;
@@ -69,12 +66,23 @@ double BlockCells<dim, Real>::interpolant(const BlockCell<dim>& leaf, const Plac
             weight *= (k >> d & 1U) != 0 ? part : 1 - part;
             corner[d] += (k >> d & 1U) != 0 ? extent : 0;
         }
-        if (weight == 0) continue;
+        if (weight != 0) use(corner, weight);
+    }
+}
+
+template <int dim, class Real>
+template <class ValueAt>
+double BlockCells<dim, Real>::interpolant(const BlockCell<dim>& leaf, const Place& node,
+                                          const ValueAt& at) const {
+    double sum = 0;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for_each_weight(leaf, node, [&](const Place& corner, double weight) {
         const double value = at(corner);
         sum += weight * value;
         low = std::min(low, value);
         high = std::max(high, value);
-    }
+    });
     return std::isfinite(sum) ? std::clamp(sum, low, high) : sum;
 }
 

@@ -167,6 +167,10 @@ public:
         Smooth known(*this);
         return reader_.at_new_nodes(e, which, writer(out, known));
     }
+    /// Gradients of the data themselves, not of what the values at nodes make of them: those of
+    /// quadratic functions inside, also where levels meet, of linear ones at walls. 0 where numbers
+    /// of cells are missing. Unless the rule is sharp_means, numbers are taken as those at centres.
+    void corner_gradients(const Element& e, std::span<Point> out) const;
 
 private:
     static constexpr auto size_ = static_cast<std::size_t>(dim);
@@ -187,6 +191,8 @@ private:
     /// The smooth values around the nodes of an element, each computed once, and whether all cells
     /// of one node are here.
     class Smooth;
+    /// The numbers around a node that its gradient is made of.
+    class Lattice;
 
     auto writer(std::span<Real> out, Smooth& known) const {
         return [this, out, &known](std::size_t i, const Place& node, const BlockCell<dim>& near) {
@@ -198,6 +204,9 @@ private:
     double cell_value(const BlockCell<dim>& cell, Smooth& known) const;
     /// The largest leaf that touches a node without having it for a corner, or null.
     const BlockCell<dim>* hangs_on(const Around& around, const Place& node) const;
+    /// Calls use(corner, weight) for the corners of a leaf that count at a node within it.
+    template <class Use>
+    void for_each_weight(const BlockCell<dim>& leaf, const Place& node, const Use& use) const;
     /// What the corners of a leaf say at a node within it.
     template <class ValueAt>
     double interpolant(const BlockCell<dim>& leaf, const Place& node, const ValueAt& at) const;
@@ -209,6 +218,9 @@ private:
     double smooth(const Node& node, Smooth& known) const;
     double residual(const BlockCell<dim>& cell, Smooth& known) const;
     double value(const Node& node, Smooth& known) const;
+    std::array<double, size_> even_slope(const Around& around) const;
+    /// Per unit length; not finite where numbers are missing.
+    Point gradient(const Place& node, const Around& around) const;
     /// The share of the residuals that a sharp rule adds.
     double part() const { return rule_ == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3; }
     /// Values at new nodes of an element among leaves of one level, with the same bits; false
@@ -257,4 +269,5 @@ private:
 }  // namespace nestgrid
 
 #include <nestgrid/adapters/block_cells_steps.hpp>
+#include <nestgrid/adapters/block_gradients_steps.hpp>
 #include <nestgrid/adapters/block_reader_steps.hpp>

@@ -106,6 +106,8 @@ public:
     Place box_size(std::size_t level, std::size_t box) const;
     /// How many cells there are in each direction, were all as fine as the last level.
     Place finest_size() const;
+    /// The extent of the cells of the last level.
+    Point finest_spacing() const { return (1.0 / extent(0)) * spacing_; }
     /// The place of a new node in its element, in halves of an edge.
     const Place& half(std::size_t n) const { return halves_[n]; }
     /// The finest place of a new node of an element, and of a corner.
@@ -120,6 +122,9 @@ public:
     /// The leaf at the first corner of a cell: the cell itself where no finer box covers it.
     /// \param cell with level, box, and place in it
     BlockCell<dim> first_leaf(const BlockCell<dim>& cell) const;
+    /// The leaf that holds a finest cell of the domain.
+    /// \param near whose box is looked at first
+    BlockCell<dim> leaf_at(const Place& cell, const BlockCell<dim>& near) const;
     /// The cells that an element is divided into, with layers of cells around them; false unless
     /// all of these are leaves of one level.
     bool patch_around(const Element& divided, std::int32_t layers, BlockPatch<dim>& patch) const;

@@ -144,16 +144,21 @@ BlockCell<dim> BlockGrid<dim>::leaf_at(const Place& cell, std::span<std::int32_t
 }
 
 template <int dim>
-BlockCell<dim> BlockGrid<dim>::first_leaf(const BlockCell<dim>& cell) const {
-    const auto l = static_cast<std::size_t>(cell.level);
+BlockCell<dim> BlockGrid<dim>::leaf_at(const Place& cell, const BlockCell<dim>& near) const {
     std::array<std::int32_t, 32> guess;
     std::fill_n(guess.begin(), levels_.size(), -1);
-    guess[l] = cell.box;
+    if (near.box >= 0) guess[static_cast<std::size_t>(near.level)] = near.box;
+    return leaf_at(cell, std::span(guess));
+}
+
+template <int dim>
+BlockCell<dim> BlockGrid<dim>::first_leaf(const BlockCell<dim>& cell) const {
+    const auto l = static_cast<std::size_t>(cell.level);
     Place first = levels_[l].finder.boxes()[static_cast<std::size_t>(cell.box)].low;
     for (std::size_t d = 0; d < size_; ++d) {
         first[d] = (first[d] + cell.place[d]) << (finest_depth() - levels_[l].depth);
     }
-    return leaf_at(first, guess);
+    return leaf_at(first, cell);
 }
 
 template <int dim>

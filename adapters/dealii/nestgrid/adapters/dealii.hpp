@@ -9,10 +9,16 @@
 // everywhere or locally; refinement must be isotropic.
 // Kept beside the triangulation: one bit per vertex, whether it hangs; it follows every refinement,
 // looked for by deal.II's own threads (dealii::MultithreadInfo).
+//
+// Of parallel::distributed and parallel::shared triangulations the grid says by `presence` which
+// leaves this process owns, one byte a cell, and distributed.hpp reaches the others. Numbers of
+// vertices differ between processes, so the library derives the keys of nodes, and which of them
+// hang. Such a grid does not follow refinements: it must be made anew.
 #pragma once
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/parallel.h>
+#include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe.h>
 #include <deal.II/fe/mapping.h>
@@ -26,8 +32,8 @@
 
 namespace nestgrid {
 
-/// A triangulation as a nested grid. It must outlive this object, which follows its refinements:
-/// what was derived from an earlier state (an indicator) is refused afterwards.
+/// A triangulation as a nested grid. It must outlive this object, which follows its refinements on
+/// one process: what was derived from an earlier state (an indicator) is refused afterwards.
 template <int dim, int spacedim = dim>
 class DealiiGrid {
 public:
@@ -43,12 +49,24 @@ public:
     static constexpr int max_children = 1 << dim;
 
     /// \param mapping gives the positions of vertices; null: where the triangulation has them
-    /// \throw InvalidInput for a triangulation that is distributed over several processes, or
-    ///        refined in one direction only
+    ///
+    /// \throw InvalidInput for a triangulation that is refined in one direction only, or over
+    ///        several processes fully distributed or with a mapping, on all processes alike
     explicit DealiiGrid(const Triangulation& triangulation,
                         const dealii::Mapping<dim, spacedim>* mapping = nullptr);
+    /// The grid of the same triangulation, as it is now.
+    DealiiGrid(const DealiiGrid& other) : DealiiGrid(*other.triangulation_, other.mapping_) {}
+    DealiiGrid& operator=(const DealiiGrid&) = delete;
+
+    /// Over several processes it says what is here, and neither keys nor which nodes hang.
+    bool offers(Feature feature) const {
+        const bool needs_whole = feature == Feature::own_keys || feature == Feature::dense_keys ||
+                                 feature == Feature::constrained;
+        return feature == Feature::presence ? parted_ : !parted_ || !needs_whole;
+    }
 
     std::size_t coarse_count() const { return triangulation_->n_cells(0); }
+    /// \throw GridError as require_current()
     CoarseElement<Element> coarse(std::size_t i) const;
     const Rule* split(const Element& e) const {
         const Cell c = cell(e);
@@ -78,12 +96,32 @@ public:
         return hanging;
     }
     void new_positions(const Element& e, NodeMask which, std::span<Point> out) const;
+    Presence presence(const Element& e) const {
+        return presence_[static_cast<std::size_t>(e.level)][static_cast<std::size_t>(e.index)];
+    }
     std::uint64_t epoch() const { return epoch_; }
 
     const Triangulation& triangulation() const { return *triangulation_; }
     Cell cell(const Element& e) const { return Cell(triangulation_, e.level, e.index); }
     /// Number of a leaf in vectors of cell data, such as those of dealii::KellyErrorEstimator.
     unsigned leaf_index(const Element& e) const { return cell(e)->active_cell_index(); }
+    /// \throw GridError over several processes, where the triangulation has changed since
+    void require_current() const {
+        if (!stale_) return;
+        throw GridError(
+            "the triangulation has changed since the grid was made for it: over several processes, "
+            "make another DealiiGrid");
+    }
+    /// Whether leaves may be on other processes.
+    bool is_parted() const { return parted_; }
+    /// Whether this process owns the leaf in a corner of an element.
+    bool has_leaf(Element e, unsigned corner) const {
+        while (parted_ && presence(e) != Presence::here) {
+            if (presence(e) == Presence::elsewhere) return false;
+            e = {e.level + 1, cell(e)->child_index(static_cast<int>(corner))};
+        }
+        return true;
+    }
 
     /// Calls f(n, child, corner) for every new node n of an element that is refined.
     template <class Function>
@@ -115,6 +153,9 @@ private:
     void mark(const Object& line_or_face, int level, bool lines_too,
               const std::vector<std::uint8_t>& finest);
     void find_rules();
+    void find_presence();
+    static void require_isotropic(const Cell& c);
+    void find_hanging();
     void update();
 
     const Triangulation* triangulation_;
@@ -123,9 +164,12 @@ private:
     bool all_cubes_ = false;
     RuleTable simplex_rules_;
     const Rule* only_simplex_rule_ = nullptr;
-    std::vector<std::uint64_t> hangs_;  // one bit a vertex
+    std::vector<std::uint64_t> hangs_;             // one bit a vertex
+    bool parted_ = false;                          // over several processes
+    bool stale_ = false;                           // and changed since
+    std::vector<std::vector<Presence>> presence_;  // by level and index; of one process: none
     std::uint64_t epoch_ = 0;
-    boost::signals2::scoped_connection refined_;
+    std::array<boost::signals2::scoped_connection, 4> changed_;
 };
 
 }  // namespace nestgrid

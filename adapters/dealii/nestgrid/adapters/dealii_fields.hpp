@@ -23,19 +23,23 @@ public:
 
     /// \throw GridError where the triangulation has changed since the field was made, or the vector
     ///        or the degrees of freedom have
+    /// \throw InvalidInput where this process needs a value of another one that the vector lacks
     NodeMask coarse_values(std::size_t i, std::span<value_type> out) const {
         made_for_.require_same(*grid_, "the field");
+        grid_->require_current();
         if (values_->size() != dofs_->n_dofs() || dofs_->n_dofs() != count_) {
             throw GridError(
                 "the vector or the degrees of freedom have changed since the field "
                 "was made for them: make another one");
         }
         const DofCell c(&grid_->triangulation(), 0, int(i), dofs_);
-        for (unsigned k = 0; k < c->n_vertices(); ++k) put(c, k, out, k);
-        return 0;
+        NodeMask missing = 0;
+        for (unsigned k = 0; k < c->n_vertices(); ++k) missing |= put(c, k, out, k);
+        return missing;
     }
     NodeMask new_values(const typename Grid::Element& e, NodeMask which,
                         std::span<value_type> out) const {
+        if (grid_->is_parted()) return parted_values(e, which, out);
         // All indices before all values: none waits for another one's way through memory.
         std::array<std::array<dealii::types::global_dof_index, component_count>,
                    Grid::max_new_nodes>
@@ -67,6 +71,13 @@ public:
 private:
     using DofCell = typename dealii::DoFHandler<dim, spacedim>::cell_iterator;
 
+    /// Vectors of which a process may have a part.
+    template <class V>
+    static constexpr bool says_what_it_has = requires(const V& v) {
+        v.locally_owned_elements();
+        v.has_ghost_elements();
+    };
+
     using Dofs = std::array<dealii::types::global_dof_index, component_count>;
 
     /// Degrees of freedom of the components at a vertex. Of hp elements a cell that is refined has
@@ -83,12 +94,30 @@ private:
         }
         return dofs;
     }
-    void put(const DofCell& c, unsigned corner, std::span<value_type> out, std::size_t n) const {
+    /// Puts the values at a corner of a cell to out, as those of node n.
+    /// \return bit n, where another process owns the leaf there
+    NodeMask put(const DofCell& c, unsigned corner, std::span<value_type> out,
+                 std::size_t n) const {
+        if (!grid_->has_leaf({c->level(), c->index()}, corner)) return NodeMask{1} << n;
         const Dofs dofs = dofs_at(c, corner);
-        for (std::size_t i = 0; i < dofs.size(); ++i) {
-            out[n * dofs.size() + i] = (*values_)(dofs[i]);
-        }
+        for (std::size_t i = 0; i < dofs.size(); ++i) out[n * dofs.size() + i] = entry(dofs[i]);
+        return 0;
     }
+    NodeMask parted_values(const typename Grid::Element& e, NodeMask which,
+                           std::span<value_type> out) const {
+        NodeMask missing = 0;
+        grid_->for_each_new_node(e, [&](std::size_t n, const auto& child, unsigned corner) {
+            if ((which >> n & 1U) == 0) return;
+            const DofCell c(&grid_->triangulation(), child->level(), child->index(), dofs_);
+            missing |= put(c, corner, out, n);
+        });
+        return missing;
+    }
+    value_type entry(dealii::types::global_dof_index dof) const {
+        if (grid_->is_parted()) require_here(dof);
+        return (*values_)(dof);
+    }
+    void require_here(dealii::types::global_dof_index dof) const;
 
     /// A degree of freedom of a cell, and where it lies.
     struct Node {
@@ -117,6 +146,7 @@ private:
     detail::MadeFor made_for_;
     std::array<unsigned, component_count> which_{};
     std::vector<Components> elements_;  // one, or those of the hp collection
+    dealii::IndexSet owned_;            // entries of the vector that this process has
 };
 
 template <int dim, class Vector, int component_count, int spacedim>
@@ -132,8 +162,29 @@ DealiiField<dim, Vector, component_count, spacedim>::DealiiField(
                            std::to_string(dofs.n_dofs()) + " degrees of freedom");
     }
     which_ = which;
+    if constexpr (says_what_it_has<Vector>) {
+        if (grid.is_parted()) owned_ = values.locally_owned_elements();
+    }
     const auto& collection = dofs.get_fe_collection();
     for (unsigned i = 0; i < collection.size(); ++i) elements_.push_back(find(collection[i]));
+}
+
+/// \throw InvalidInput where this process does not have an entry of the vector, which it needs
+template <int dim, class Vector, int component_count, int spacedim>
+void DealiiField<dim, Vector, component_count, spacedim>::require_here(
+    dealii::types::global_dof_index dof) const {
+    if constexpr (says_what_it_has<Vector>) {
+        if (owned_.is_element(dof)) return;
+        bool here = values_->has_ghost_elements();
+        if constexpr (requires { values_->get_partitioner()->is_ghost_entry(dof); }) {
+            here = here && values_->get_partitioner()->is_ghost_entry(dof);
+        }
+        if (here) return;
+        throw InvalidInput(
+            "entry " + std::to_string(dof) +
+            " of the vector belongs to another process, and the vector has no copy of it: it must "
+            "have ghost values at all locally relevant degrees of freedom, which must be updated");
+    }
 }
 
 /// \throw InvalidInput where a component has no nodes at vertices
@@ -222,7 +273,7 @@ void DealiiField<dim, Vector, component_count, spacedim>::evaluate(
         const std::vector<Node>& nodes = of_cell.nodes[c];
         if (are_at(nodes, reference)) {
             for (std::size_t i = 0; i < nodes.size(); ++i) {
-                out[i * stride + c] = (*values_)(dof[nodes[i].dof]);
+                out[i * stride + c] = entry(dof[nodes[i].dof]);
             }
             continue;
         }
@@ -231,7 +282,7 @@ void DealiiField<dim, Vector, component_count, spacedim>::evaluate(
             double sum = 0;
             for (const Node& node : nodes) {
                 sum += fe.shape_value_component(node.dof, at, which_[c]) *
-                       static_cast<double>((*values_)(dof[node.dof]));
+                       static_cast<double>(entry(dof[node.dof]));
             }
             out[i * stride + c] = static_cast<value_type>(sum);
         }

@@ -15,21 +15,36 @@ DealiiGrid<dim, spacedim>::DealiiGrid(const Triangulation& triangulation,
                                       const dealii::Mapping<dim, spacedim>* mapping)
     : triangulation_{&triangulation}, mapping_{mapping} {
     namespace mpi = dealii::Utilities::MPI;
-    const unsigned processes =
-        mpi::job_supports_mpi() ? mpi::n_mpi_processes(triangulation.get_communicator()) : 1;
-    if (processes > 1) {
-        throw InvalidInput("the triangulation is distributed over " + std::to_string(processes) +
-                           " processes, which is not supported");
+    parted_ = mpi::job_supports_mpi() && mpi::n_mpi_processes(triangulation.get_communicator()) > 1;
+    using Fully = dealii::parallel::fullydistributed::Triangulation<dim, spacedim>;
+    if (parted_ && dynamic_cast<const Fully*>(&triangulation) != nullptr) {
+        throw InvalidInput(
+            "the triangulation is fully distributed, so that no process knows the whole coarse "
+            "mesh, which is not supported: take parallel::distributed::Triangulation");
+    }
+    if (parted_ && mapping != nullptr) {
+        throw InvalidInput(
+            "a mapping gives no positions of cells of other processes: over several processes the "
+            "vertices of the triangulation must be where they belong");
     }
     halving_ = &dyadic_rule(dim == 1   ? Shape::segment
                             : dim == 2 ? Shape::quadrilateral
                                        : Shape::hexahedron);
-    refined_ = triangulation.signals.any_change.connect([this] { update(); });
     update();
+    auto& signals = triangulation.signals;
+    const auto follow = [this] {
+        stale_ = parted_;
+        update();
+    };
+    changed_ = {signals.any_change.connect(follow),
+                signals.post_distributed_refinement.connect(follow),
+                signals.post_distributed_repartition.connect(follow),
+                signals.post_distributed_load.connect(follow)};
 }
 
 template <int dim, int spacedim>
 auto DealiiGrid<dim, spacedim>::coarse(std::size_t i) const -> CoarseElement<Element> {
+    require_current();
     const Cell c = cell({0, int(i)});
     CoarseElement<Element> result{{0, int(i)}, shape(c), {}, {}, 1};
     for (unsigned k = 0; k < c->n_vertices(); ++k) {
@@ -175,6 +190,35 @@ void DealiiGrid<dim, spacedim>::find_rules() {
     if (simplex_rules_.size() > 1) only_simplex_rule_ = nullptr;
 }
 
+/// Finds which leaves below each cell this process owns. Others may be coarser here than there.
+template <int dim, int spacedim>
+void DealiiGrid<dim, spacedim>::find_presence() {
+    presence_.resize(triangulation_->n_levels());
+    for (unsigned level = triangulation_->n_levels(); level-- > 0;) {
+        presence_[level].resize(triangulation_->n_raw_cells(level), Presence::elsewhere);
+        for (const auto& c : triangulation_->cell_iterators_on_level(level)) {
+            Presence& of_cell = presence_[level][static_cast<std::size_t>(c->index())];
+            if (!c->has_children()) {
+                of_cell = c->is_locally_owned() ? Presence::here : Presence::elsewhere;
+                continue;
+            }
+            require_isotropic(c);
+            unsigned here = 0;
+            unsigned elsewhere = 0;
+            for (unsigned k = 0; k < c->n_children(); ++k) {
+                const Presence below = presence({c->level() + 1, c->child_index(k)});
+                here += below == Presence::here ? 1 : 0;
+                elsewhere += below == Presence::elsewhere ? 1 : 0;
+            }
+            const Presence first = presence({c->level() + 1, c->child_index(0)});
+            of_cell = here == c->n_children()           ? Presence::here
+                      : elsewhere == c->n_children()    ? Presence::elsewhere
+                      : first <= Presence::partly_first ? Presence::partly_first
+                                                        : Presence::partly;
+        }
+    }
+}
+
 template <int dim, int spacedim>
 void DealiiGrid<dim, spacedim>::update() {
     // The counts tell an adapter that was made after a change from one that was made before.
@@ -182,8 +226,27 @@ void DealiiGrid<dim, spacedim>::update() {
          {std::size_t{triangulation_->n_cells()}, std::size_t{triangulation_->n_vertices()}}) {
         epoch_ = static_cast<std::uint64_t>(detail::mix(NodeKey{epoch_} + NodeKey{count} + 1U));
     }
+    if (stale_) return;
     all_cubes_ = triangulation_->all_reference_cells_are_hyper_cube();
     if (!all_cubes_) find_rules();
+    if (parted_) {
+        find_presence();
+    } else {
+        find_hanging();
+    }
+}
+
+template <int dim, int spacedim>
+void DealiiGrid<dim, spacedim>::require_isotropic(const Cell& c) {
+    if (c->n_vertices() != unsigned{max_corners} || c->n_children() == unsigned{max_children}) {
+        return;
+    }
+    throw InvalidInput("cell " + c->id().to_string() + " is refined in some directions only");
+}
+
+/// Finds the vertices that hang.
+template <int dim, int spacedim>
+void DealiiGrid<dim, spacedim>::find_hanging() {
     const auto corners_of = [&](const Cell& c) {
         return all_cubes_ ? unsigned{max_corners} : c->n_vertices();
     };
@@ -199,10 +262,8 @@ void DealiiGrid<dim, spacedim>::update() {
                        !at.compare_exchange_weak(known, level, std::memory_order_relaxed)) {
                 }
             }
-        } else if (corners_of(c) == unsigned{max_corners} &&
-                   c->n_children() != unsigned{max_children}) {
-            throw InvalidInput("cell " + c->id().to_string() +
-                               " is refined in some directions only");
+        } else {
+            require_isotropic(c);
         }
     });
     if constexpr (dim > 1) {

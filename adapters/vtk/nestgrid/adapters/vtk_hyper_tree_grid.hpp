@@ -1,20 +1,29 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// VTK's hyper tree grids, in place: forests of bisected quadrilaterals or hexahedra on a
-// rectilinear coarse grid, with data of cells.
+// VTK's hyper tree grids, in place: forests of quadrilaterals or hexahedra on a rectilinear coarse
+// grid, which are divided into two or three in each direction, with data of cells.
 //
 // A node is named by its place on the lattice of the deepest level, so that trees agree about
 // it. Masked cells and ghost cells are hidden. Data of cells get to the nodes by CellAverages
-// (cell_data.hpp).
+// (cell_data.hpp). Ghost cells are those that another process draws, and their data count for the
+// nodes between the two: make the averages on a grid that shows them,
+//
+//     const HyperTreeGrid<3> all(*trees, GhostCells::shown);
+//     const CellAverages density(all, [&](const auto& e) { return values[all.index(e)]; });
+//     isosurface(HyperTreeGrid<3>(*trees), density, 0.5);
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <vtkBitArray.h>
 #include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkHyperTree.h>
 #include <vtkHyperTreeGrid.h>
 #include <vtkUnsignedCharArray.h>
@@ -25,16 +34,30 @@
 
 namespace nestgrid {
 
-/// A hyper tree grid of dimension 2 or 3. It must outlive this object, which must be made anew when
-/// the grid has changed: when trees were refined, when it has another mask, other ghost cells or
-/// coordinates, or when one of these was told to be Modified().
-template <int dim>
+/// Whether cells are drawn that another process has, too.
+enum class GhostCells : std::uint8_t { hidden, shown };
+
+namespace detail {
+
+/// A quadrilateral or hexahedron divided into `factor` in each direction, children x fastest.
+template <int dim, int factor>
+const Rule& rule_of_trees();
+
+}  // namespace detail
+
+/// A hyper tree grid of dimension 2 or 3 and of branch factor 2 or 3. It must outlive this object,
+/// which must be made anew when the grid has changed: when trees were refined, when it has another
+/// mask, other ghost cells or coordinates, or when one of these was told to be Modified().
+template <int dim, int factor = 2>
 class HyperTreeGrid {
+    static_assert((dim == 2 || dim == 3) && (factor == 2 || factor == 3));
+    static constexpr int power(int base) { return dim == 2 ? base * base : base * base * base; }
+
 public:
     static constexpr int dimension = dim;
     static constexpr int max_corners = 1 << dim;
-    static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
-    static constexpr int max_children = 1 << dim;
+    static constexpr int max_children = power(factor);
+    static constexpr int max_new_nodes = power(factor + 1) - max_corners;
     static constexpr Shape only_shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
     using Place = std::array<std::uint32_t, 3>;
     struct Element {
@@ -44,10 +67,9 @@ public:
         Place place{};  ///< of its first corner, in lattice steps of its own level
     };
 
-    /// \throw InvalidInput for a grid of another dimension, with another branch factor than two,
-    ///        with more than 2^31 steps along a side at its deepest level, or with a mask that is
-    ///        too short
-    explicit HyperTreeGrid(vtkHyperTreeGrid& grid);
+    /// \throw InvalidInput for a grid of another dimension or branch factor, with more than 2^31
+    ///        steps along a side at its deepest level, or with a mask that is too short
+    explicit HyperTreeGrid(vtkHyperTreeGrid& grid, GhostCells ghosts = GhostCells::hidden);
 
     std::size_t coarse_count() const { return trees_.size(); }
     /// \throw GridError where the grid has changed since this object was made
@@ -59,7 +81,7 @@ public:
         c.element = {trees_[i].tree, 0, 0, {at[0], at[1], at[2]}};
         c.shape = rule_->parent;
         for (std::size_t k = 0; k < max_corners; ++k) {
-            const Place corner = step(c.element.place, k);
+            const Place corner = step(c.element.place, k, 2);
             std::uint64_t id = 0;
             for (std::size_t d = 3; d-- > 0;) {
                 c.corners[k][d] = coordinates_[d][corner[d]];
@@ -76,8 +98,8 @@ public:
         const vtkIdType first = e.tree->GetElderChildIndex(static_cast<unsigned>(e.vertex));
         for (std::size_t c = 0; c < out.size(); ++c) {
             out[c] = {e.tree, first + static_cast<vtkIdType>(c), e.level + 1, e.place};
-            for (std::uint32_t& x : out[c].place) x *= 2;
-            out[c].place = step(out[c].place, c);
+            for (std::uint32_t& x : out[c].place) x *= factor;
+            out[c].place = step(out[c].place, c, factor);
         }
     }
 
@@ -93,6 +115,9 @@ public:
         }
     }
 
+    /// New nodes on a face or edge of an element that is no larger than e, is no part of the next
+    /// level, and is not hidden.
+    NodeMask constrained(const Element& e) const;
     /// What is masked.
     Hidden hidden(const Element& e) const {
         return hidden_.empty() ? Hidden::not_at_all : hidden_[static_cast<std::size_t>(index(e))];
@@ -123,23 +148,37 @@ private:
             "the hyper tree grid has changed since its adapter was made: make another one");
     }
     Hidden read_mask(const Element& e, bool masked);
+    void find_shared_nodes();
 
-    /// A step in the directions in which corner, or child, k lies from the first one.
-    Place step(Place from, std::size_t k) const {
+    /// The steps in which item k lies from the first one of a lattice of so many along each side:
+    /// corners, or children.
+    Place step(Place from, std::size_t k, std::size_t along) const {
         for (std::size_t a = 0; a < dim; ++a) {
-            from[axis_[a]] += static_cast<std::uint32_t>(k >> a & 1U);
+            from[axis_[a]] += static_cast<std::uint32_t>(k % along);
+            k /= along;
         }
         return from;
     }
     NodeKey corner_key(const Element& e, std::size_t k) const {
         NodeKey key = 0;
-        for (const std::uint32_t x : step(e.place, k))
-            key = detail::mix(key + (NodeKey{x} << (depth_ - e.level)));
+        for (const std::uint32_t x : step(e.place, k, 2))
+            key = detail::mix(key + NodeKey{x} * cells_in(depth_ - e.level));
         return key;
     }
+    /// Along a side of an element that is divided so many times.
+    static std::uint32_t cells_in(int levels) {
+        std::uint32_t cells = 1;
+        for (; levels > 0; --levels) cells *= factor;
+        return cells;
+    }
+    /// Whether a leaf that is not hidden fills the place of an element of a level.
+    bool is_undivided(const Place& place, int level) const;
 
     vtkHyperTreeGrid* grid_;
+    GhostCells ghost_cells_;
     const Rule* rule_;
+    /// New nodes of an element that are also on each neighbour of its size, by steps to it.
+    std::array<NodeMask, static_cast<std::size_t>(power(3))> shared_{};
     int depth_ = 0;
     std::array<std::size_t, 3> axis_{};  // directions in which there is more than one point
     std::array<std::vector<double>, 3> coordinates_;
@@ -151,16 +190,74 @@ private:
     std::vector<Hidden> hidden_;              // by index; empty without a mask and ghosts
 };
 
-template <int dim>
-HyperTreeGrid<dim>::HyperTreeGrid(vtkHyperTreeGrid& grid)
-    : grid_{&grid}, rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
+namespace detail {
+
+/// Nodes are those of a lattice of thirds, each a mean of the corners around it.
+inline Rule make_ternary_rule(Shape shape, int dim) {
+    constexpr int side = 4;  // nodes along an edge
+    const int corners = 1 << dim;
+    const auto digit = [](int number, int base, int d) {
+        for (; d > 0; --d) number /= base;
+        return number % base;
+    };
+    const int nodes = dim == 2 ? 16 : 64;
+    std::vector<std::uint8_t> number(static_cast<std::size_t>(nodes));  // in the rule, by place
+    std::vector<Stencil> stencils;
+    for (int place = 0; place < nodes; ++place) {
+        Stencil stencil;
+        for (int k = 0; k < corners; ++k) {
+            int weight = 1;
+            for (int d = 0; d < dim; ++d) {
+                const int at = digit(place, side, d);
+                weight *= (k >> d & 1) != 0 ? at : 3 - at;
+            }
+            if (weight == 0) continue;
+            stencil.parent[stencil.count] = static_cast<std::uint8_t>(k);
+            stencil.weight[stencil.count++] = weight / (dim == 2 ? 9.0 : 27.0);
+        }
+        const bool is_corner = stencil.count == 1;
+        number[static_cast<std::size_t>(place)] =
+            is_corner ? stencil.parent[0]
+                      : static_cast<std::uint8_t>(corners + static_cast<int>(stencils.size()));
+        if (!is_corner) stencils.push_back(stencil);
+    }
+    std::vector<Child> children;
+    for (int c = 0; c < (dim == 2 ? 9 : 27); ++c) {
+        Child child{shape, {}, 1, {}};
+        for (int k = 0; k < corners; ++k) {
+            int place = 0;
+            for (int d = dim; d-- > 0;) place = side * place + digit(c, 3, d) + (k >> d & 1);
+            child.corner[static_cast<std::size_t>(k)] = number[static_cast<std::size_t>(place)];
+        }
+        children.push_back(child);
+    }
+    return make_rule("thirds", shape, std::move(stencils), std::move(children));
+}
+
+template <int dim, int factor>
+const Rule& rule_of_trees() {
+    constexpr Shape shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
+    if constexpr (factor == 2) {
+        return dyadic_rule(shape);
+    } else {
+        static const Rule rule = make_ternary_rule(shape, dim);
+        return rule;
+    }
+}
+
+}  // namespace detail
+
+template <int dim, int factor>
+HyperTreeGrid<dim, factor>::HyperTreeGrid(vtkHyperTreeGrid& grid, GhostCells ghosts)
+    : grid_{&grid}, ghost_cells_{ghosts}, rule_{&detail::rule_of_trees<dim, factor>()} {
     if (grid.GetDimension() != dim) {
         throw InvalidInput("the hyper tree grid has dimension " +
                            std::to_string(grid.GetDimension()) + ", not " + std::to_string(dim));
     }
-    if (grid.GetBranchFactor() != 2) {
+    if (grid.GetBranchFactor() != factor) {
         throw InvalidInput("the hyper tree grid has the branch factor " +
-                           std::to_string(grid.GetBranchFactor()) + ", not 2");
+                           std::to_string(grid.GetBranchFactor()) + ", not " +
+                           std::to_string(factor));
     }
     depth_ = static_cast<int>(grid.GetNumberOfLevels()) - 1;
     const std::array<vtkDataArray*, 3> x{grid.GetXCoordinates(), grid.GetYCoordinates(),
@@ -169,7 +266,7 @@ HyperTreeGrid<dim>::HyperTreeGrid(vtkHyperTreeGrid& grid)
     std::size_t axes = 0;
     for (std::size_t d = 0; d < 3; ++d) {
         if (points[d] == 1) continue;
-        if (depth_ > 30 || points[d] >= 1U << (31 - depth_)) {
+        if (std::pow(factor, depth_) * points[d] >= 0x1p31) {
             throw InvalidInput("the hyper tree grid is too deep for its " +
                                std::to_string(points[d] - 1) + " trees along a side");
         }
@@ -203,12 +300,14 @@ HyperTreeGrid<dim>::HyperTreeGrid(vtkHyperTreeGrid& grid)
         hidden_.resize(static_cast<std::size_t>(cells));
         for (const Tree& tree : trees_) read_mask({tree.tree, 0, 0, {}}, false);
     }
+    find_shared_nodes();
     epoch_ = epoch();
 }
 
-template <int dim>
-std::uint64_t HyperTreeGrid<dim>::epoch() const {
+template <int dim, int factor>
+std::uint64_t HyperTreeGrid<dim, factor>::epoch() const {
     NodeKey sum = detail::mix(sizes_ + static_cast<NodeKey>(grid_->GetMTime()));
+    sum = detail::mix(sum + static_cast<NodeKey>(ghost_cells_));
     for (vtkObject* part : std::initializer_list<vtkObject*>{
              grid_->GetMask(), grid_->GetGhostCells(), grid_->GetXCoordinates(),
              grid_->GetYCoordinates(), grid_->GetZCoordinates()}) {
@@ -218,11 +317,73 @@ std::uint64_t HyperTreeGrid<dim>::epoch() const {
     return static_cast<std::uint64_t>(sum);
 }
 
-template <int dim>
-Hidden HyperTreeGrid<dim>::read_mask(const Element& e, bool masked) {
+template <int dim, int factor>
+bool HyperTreeGrid<dim, factor>::is_undivided(const Place& place, int level) const {
+    std::array<unsigned, 3> root{};
+    for (std::size_t d = 0; d < 3; ++d) root[d] = place[d] / cells_in(level);
+    for (std::size_t d = 0; d < 3; ++d) {
+        const std::size_t trees = std::max<std::size_t>(coordinates_[d].size(), 2) - 1;
+        if (root[d] >= trees) return false;
+    }
+    vtkIdType index = 0;
+    grid_->GetIndexFromLevelZeroCoordinates(index, root[0], root[1], root[2]);
+    Element e{grid_->GetTree(index), 0, 0, {root[0], root[1], root[2]}};
+    if (e.tree == nullptr) return false;
+    while (!e.tree->IsLeaf(e.vertex)) {
+        if (e.level == level) return false;
+        std::size_t child = 0;
+        const std::uint32_t below = cells_in(level - e.level - 1);
+        for (std::size_t a = dim; a-- > 0;) {
+            child = factor * child + place[axis_[a]] / below % factor;
+        }
+        std::array<Element, static_cast<std::size_t>(max_children)> children_of;
+        children(e, children_of);
+        e = children_of[child];
+    }
+    return hidden(e) != Hidden::wholly;
+}
+
+template <int dim, int factor>
+NodeMask HyperTreeGrid<dim, factor>::constrained(const Element& e) const {
+    NodeMask hanging = 0;
+    for (std::size_t s = 0; s < shared_.size(); ++s) {
+        if ((shared_[s] & ~hanging) == 0) continue;
+        Place beside = step(e.place, s, 3);
+        bool is_inside = true;
+        for (std::size_t a = 0; a < dim; ++a) {
+            is_inside = is_inside && beside[axis_[a]] > 0;
+            --beside[axis_[a]];
+        }
+        if (is_inside && is_undivided(beside, e.level)) hanging |= shared_[s];
+    }
+    return hanging;
+}
+
+template <int dim, int factor>
+void HyperTreeGrid<dim, factor>::find_shared_nodes() {
+    for (std::size_t s = 0; s < shared_.size(); ++s) {
+        if (s == shared_.size() / 2) continue;  // the element itself
+        for (std::size_t n = 0; n < static_cast<std::size_t>(max_new_nodes); ++n) {
+            std::size_t child = rule_->new_corner[n].child;
+            std::size_t side = s;
+            bool is_shared = true;
+            for (std::size_t a = 0; a < dim; ++a) {
+                const std::size_t at = child % factor + (rule_->new_corner[n].corner >> a & 1U);
+                is_shared = is_shared && (side % 3 == 1 || at == (side % 3 == 0 ? 0 : factor));
+                child /= factor;
+                side /= 3;
+            }
+            if (is_shared) shared_[s] |= NodeMask{1} << n;
+        }
+    }
+}
+
+template <int dim, int factor>
+Hidden HyperTreeGrid<dim, factor>::read_mask(const Element& e, bool masked) {
     masked = masked || (mask_ != nullptr && mask_->GetValue(index(e)) != 0);
-    if (split(e) == nullptr && ghosts_ != nullptr && ghosts_->GetValue(index(e)) != 0) {
-        masked = true;  // another process has the cell
+    const int shown = ghost_cells_ == GhostCells::shown ? vtkDataSetAttributes::DUPLICATECELL : 0;
+    if (split(e) == nullptr && ghosts_ != nullptr && (ghosts_->GetValue(index(e)) & ~shown) != 0) {
+        masked = true;
     }
     Hidden result = masked ? Hidden::wholly : Hidden::not_at_all;
     if (split(e) != nullptr) {

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <height_fields/element_sides.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace nestgrid::engine {
+
+std::span<const EdgeNode> ElementSide::inside(const EdgeNodes& nodes) const {
+    const std::span<const EdgeNode> on = nodes.on(around);
+    const auto [least, greatest] = std::minmax(place[0], place[1]);
+    const auto is_before = [](const EdgeNode& node, double end) { return node.place < end; };
+    const auto first = std::ranges::upper_bound(on, least, {}, &EdgeNode::place);
+    return {first, std::lower_bound(first, on.end(), greatest, is_before)};
+}
+
+template <class Real>
+void ElementSides<Real>::load(const View& view) {
+    view_ = &view;
+    walk_->corners(view, key_.data(), x_.data());
+}
+
+template <class Real>
+ElementSide ElementSides<Real>::side(std::size_t edge) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto [a, b] = view_->topology().edge[edge];
+    const MaximalEdge<Real>* const maximal = view_->closed.edge(edge);
+    if (maximal == nullptr) {
+        const double end = key_[a] < key_[b] ? infinity : -infinity;
+        return {{a, b}, {key_[a], key_[b]}, {-end, end}};
+    }
+    const KeyPair around(maximal->key(0), maximal->key(1));
+    auto [from, to] = walk_->positions(*maximal);
+    if (maximal->key(0) != around.low) std::swap(from, to);
+    return {{a, b}, around, {dot(x_[a] - from, to - from), dot(x_[b] - from, to - from)}};
+}
+
+template <class Real>
+void ElementSides<Real>::record(EdgeNodes& nodes) {
+    for (std::size_t e = 0; e < view_->topology().edges; ++e) {
+        if (view_->closed.edge(e) == nullptr) continue;
+        const ElementSide at = side(e);
+        const std::size_t end = at.rises() ? 1 : 0;
+        const std::size_t corner = at.corner[end];
+        if (key_[corner] == at.around.low || key_[corner] == at.around.high) continue;
+        nodes.add({at.around, at.place[end], key_[corner], x_[corner], 0}, values(corner));
+    }
+}
+
+template class ElementSides<float>;
+template class ElementSides<double>;
+
+}  // namespace nestgrid::engine

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <high_order/lens_sizes.hpp>
+
+#include <algorithm>
+
+#include <nestgrid/error.hpp>
+
+namespace nestgrid::engine {
+
+LeafCorners::LeafCorners(const BaseWalk& walk, const LeafRecords& records)
+    : records_{&records}, nets_(records.leaves().size()) {
+    walk.for_each([&](Task*, std::span<const BaseElement> way) {
+        const BaseElement& e = way.back();
+        if (e.member->rule != nullptr) return;
+        Net& net = nets_[records.leaf_at(e.path)];
+        const bool pyramid = e.shape->shape == Shape::pyramid;
+        for (std::size_t k = 0; k < max_corners; ++k) {
+            // The upper face of a pyramid's box is its apex.
+            const std::size_t corner = pyramid ? std::min<std::size_t>(k, 4) : k;
+            if (corner >= e.shape->corners) break;
+            const std::size_t at = net_corner(1, e.shape->factors, k);
+            for (std::size_t d = 0; d < 3; ++d) net[d][at] = e.x[corner][d];
+        }
+    });
+}
+
+Point LeafCorners::position(std::size_t leaf, const Place& at, int level) const {
+    const LeafPolynomial& of = records_->leaves()[leaf];
+    Point local = point_at(at, level);
+    if (of.shape == Shape::pyramid) local = collapsed(local);
+    Point x;
+    for (std::size_t d = 0; d < 3; ++d) {
+        x[d] = net_value(nets_[leaf][d].data(), 1, of.factors(), local);
+    }
+    return x;
+}
+
+LensSizes::LensSizes(const LensRequest& lens, const LeafRecords& records,
+                     const LeafCorners& corners)
+    : lens_{lens},
+      share_{std::max(1.0, 3.125 * lens.slope)},
+      records_{&records},
+      corners_{&corners} {
+    if (lens.finest > 0 && lens.finest <= lens.coarsest) return;
+    throw InvalidInput(
+        "a lens on data of higher degree says how large elements are in it: 0 < finest <= "
+        "coarsest");
+}
+
+double LensSizes::greatest_size(const Point& x) const {
+    const double distance = std::max(lens_.distance(x), 0.0);
+    return std::min(lens_.coarsest, lens_.finest + lens_.slope * distance);
+}
+
+bool LensSizes::is_fine(std::size_t leaf, std::span<const Place> corners, int level) const {
+    std::array<Point, max_corners> x;
+    double diameter = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        x[i] = corners_->position(leaf, corners[i], level);
+        for (std::size_t k = 0; k < i; ++k) diameter = std::max(diameter, norm(x[i] - x[k]));
+    }
+    return std::all_of(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(corners.size()),
+                       [&](const Point& at) { return share_ * diameter <= greatest_size(at); });
+}
+
+bool LensSizes::is_fine(const OnRecord& part) const {
+    std::array<Place, 4> corners{};
+    const std::uint32_t leaf = records_->in_owner(part, corners);
+    return is_fine(leaf, std::span<const Place>(corners).first(part.count), part.level);
+}
+
+/// What an element that stops has on its faces is smaller than it, and as near to the node, so that
+/// with T at the node less by slope times the size of the element it is fine.
+bool LensSizes::may_stop(double size, const Point& node) const {
+    return (1.1 * share_ + lens_.slope) * size <= greatest_size(node);
+}
+
+}  // namespace nestgrid::engine

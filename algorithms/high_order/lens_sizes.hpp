@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A lens (lens.hpp) on leaves and the elements below them: an element, an edge or a face is fine
+// where `share` times its diameter is at most T at each of its corners, T growing by `slope` with
+// the distance from the domain.
+//
+// A half of a part has at most 3/4 of its diameter, and its corners lie within 3/4 of a diameter
+// from those of the part. So with share >= 3 slope a half of what is fine is fine. Invariants:
+//   - whether a part is fine is a function of its leaf, or its record, and its place alone;
+//   - parts of what is fine are fine.
+// Consequence: as for flatness by beta, elements around an edge or face agree.
+#pragma once
+
+#include <high_order/leaf_records.hpp>
+#include <nestgrid/algorithms/projection.hpp>
+
+namespace nestgrid::engine {
+
+/// The corners of all leaves in space.
+class LeafCorners {
+public:
+    LeafCorners(const BaseWalk& walk, const LeafRecords& records);
+
+    /// A point of a leaf, whose edges are straight. \param at in units of 2^-level
+    Point position(std::size_t leaf, const Place& at, int level) const;
+
+private:
+    using Net = std::array<std::array<double, max_corners>, 3>;  // of each coordinate, of degree 1
+
+    const LeafRecords* records_;
+    std::vector<Net> nets_;
+};
+
+class LensSizes {
+public:
+    /// Borrows the records and the corners.
+    /// \throw InvalidInput where the sizes of the lens are not 0 < finest <= coarsest
+    LensSizes(const LensRequest& lens, const LeafRecords& records, const LeafCorners& corners);
+
+    /// Whether a part of a leaf with these corners is fine. \param corners in units of 2^-level
+    bool is_fine(std::size_t leaf, std::span<const Place> corners, int level) const;
+    /// The same for a part on a record.
+    bool is_fine(const OnRecord& part) const;
+    /// Whether elements of the hierarchy may stop at a node. \param size as in RealNode
+    bool may_stop(double size, const Point& node) const;
+
+private:
+    double greatest_size(const Point& x) const;
+
+    LensRequest lens_;
+    double share_;
+    const LeafRecords* records_;
+    const LeafCorners* corners_;
+};
+
+}  // namespace nestgrid::engine

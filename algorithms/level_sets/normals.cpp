@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <level_sets/normals.hpp>
+
+#include <nestgrid/detail/interpolate.hpp>
+
+namespace nestgrid::engine {
+
+namespace {
+
+using Gradients = std::array<Point, max_corners>;
+
+template <class Real>
+Gradients own_gradients(const Walk<Real>& walk, const ElementView<Real>& view) {
+    Gradients g{};
+    walk.gradients(view, std::span(g).first(view.corner_count()));
+    return g;
+}
+
+template <class Real>
+Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, const Rule& rule,
+                    std::size_t node);
+
+/// The projected gradient at a corner: a vector-valued function, projected with the same S as the
+/// values (paper, section 8).
+template <class Real>
+Point projected_gradient(const Walk<Real>& walk, const ElementView<Real>& view,
+                         std::size_t corner) {
+    if ((view.interpolated >> corner & 1U) != 0 && view.father != nullptr) {
+        const Child& child = view.made_by->children[view.child];
+        return node_gradient(walk, *view.father, *view.made_by, child.corner[corner]);
+    }
+    return own_gradients(walk, view)[corner];
+}
+
+/// The projected gradient at a corner or new node of a split that interpolates it.
+template <class Real>
+Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, const Rule& rule,
+                    std::size_t node) {
+    const std::size_t corners = father.corner_count();
+    if (node < corners) return projected_gradient(walk, father, node);
+    const Stencil& stencil = rule.new_nodes[node - corners];
+    Gradients parent;
+    Stencil local = stencil;
+    for (std::size_t i = 0; i < stencil.count; ++i) {
+        parent[i] = node_gradient(walk, father, rule, stencil.parent[i]);
+        local.parent[i] = static_cast<std::uint8_t>(i);
+    }
+    return detail::interpolate(local, parent.data());
+}
+
+/// The way down to an element, coarse element first.
+template <class Real>
+DrawingPlace place_of(const ElementView<Real>& view) {
+    DrawingPlace place;
+    for (const ElementView<Real>* at = &view; at->father != nullptr; at = at->father) {
+        place.push_back(static_cast<char>(at->child));
+    }
+    for (std::size_t coarse = view.coarse, i = 0; i < 8; ++i, coarse >>= 8U) {
+        place.push_back(static_cast<char>(coarse & 0xFFU));
+    }
+    return {place.rbegin(), place.rend()};
+}
+
+}  // namespace
+
+template <class Real>
+void Normals<Real>::begin(bool logs) {
+    logs_ = logs;
+    sums_.clear();
+    log_.clear();
+    of_shared_.clear();
+}
+
+template <class Real>
+void Normals<Real>::add(const ElementCuts<Real>& element) {
+    const View& view = element.view();
+    const std::size_t corners = view.corner_count();
+    const std::size_t components = element.walk().components();
+    std::array<CornerGradient, max_corners> drawn;
+    Gradients exact;  // fetched at the first corner that needs one
+    bool asked = false;
+    std::array<double, max_corners> value;
+    if (!own_) {
+        for (std::size_t i = 0; i < corners; ++i) value[i] = view.value[i * components];
+        corner_gradients(view.topology(), std::span(element.positions()).first(corners),
+                         std::span(value).first(corners), std::span(drawn).first(corners));
+    }
+    if (shared_ != nullptr) log_shared(element, std::span(drawn).first(corners));
+    for (std::size_t i = 0; i < corners; ++i) {
+        const Slot slot = sums_.slot(element.keys()[i]);
+        if (!own_) {
+            add(slot, drawn[i]);
+        } else if (!sums_.known(slot)) {
+            const bool interpolated = (view.interpolated >> i & 1U) != 0;
+            if (!interpolated && !asked) {
+                exact = own_gradients(element.walk(), view);
+                asked = true;
+            }
+            add(slot, {interpolated ? projected_gradient(element.walk(), view, i) : exact[i], 1});
+        }
+    }
+}
+
+/// Logs the terms at nodes that other ranks have, too.
+template <class Real>
+void Normals<Real>::log_shared(const ElementCuts<Real>& element,
+                               std::span<const CornerGradient> drawn) {
+    DrawingPlace place;
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+        if (!shared_->is_shared(element.keys()[i])) continue;
+        if (place.empty()) place = place_of(element.view());
+        of_shared_.add(element.keys()[i], place, drawn[i]);
+    }
+}
+
+/// Adds a gradient at a node. Adds a gradient of the field only once, because it is the same from
+/// every element.
+template <class Real>
+void Normals<Real>::add(Slot slot, const CornerGradient& gradient) {
+    if (own_ && sums_.known(slot)) return;
+    sums_.add(slot, gradient);
+    if (logs_) log_.emplace_back(slot, gradient);
+}
+
+template <class Real>
+void Normals<Real>::append(const Normals& other) {
+    std::vector<Slot> slot;
+    for (const NodeKey node : other.sums_.nodes()) slot.push_back(sums_.slot(node));
+    for (const auto& [at, gradient] : other.log_) add(slot[at], gradient);
+    of_shared_.append(other.of_shared_);
+}
+
+template class Normals<float>;
+template class Normals<double>;
+
+}  // namespace nestgrid::engine
