@@ -29,7 +29,7 @@ struct DiscontinuousOptions {
     double threshold = 0;
     /// Or the least threshold at which there are at most so many triangles; 0 for `threshold`.
     std::uint64_t max_triangles = 0;
-    /// Of the same data, borrowed; or null: then the drawing computes its own where elements may
+    /// Deviations of these data, borrowed; or null: the drawing computes them where elements may
     /// stop.
     const ElementDeviations* deviations = nullptr;
     /// Quadrilaterals in which some component differs by more than this from two triangles get a
