@@ -76,7 +76,7 @@ std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Criterion& criterion, const Bounds& bounds,
                                              std::uint64_t most, const IsosurfaceOptions& options,
                                              const Executor& executor);
-/// The same for a shading.
+/// The number of triangles of a shading, or nothing where there are more than `most`.
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                                              const Criterion& criterion, const Bounds& bounds,

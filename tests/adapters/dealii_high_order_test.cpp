@@ -4,6 +4,7 @@
 // Solutions of deal.II of higher degree, read in place.
 #include <deal.II/base/function.h>
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_dgq.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_system.h>
@@ -16,6 +17,7 @@
 
 #include <nestgrid/adapters/dealii.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
+#include <nestgrid/algorithms/polynomial_values.hpp>
 #include <nestgrid/check_grid.hpp>
 
 #include "closedness.hpp"
@@ -188,6 +190,58 @@ void expect_closed_hp(double tolerance) {
 TEST(DealiiHighOrder, DegreesMayDifferFromCellToCell) {
     expect_closed_hp<3>(0.1);
     expect_closed_hp<2>(0.02);
+}
+
+/// Discontinuous elements jump as far as their values say.
+template <int dim>
+void expect_jumps_are_closed(const dealii::FiniteElement<dim>& fe, Domain domain,
+                             double tolerance) {
+    Problem<dim> problem(fe, domain);
+    std::mt19937 random(4);
+    for (double& value : problem.values) value += 0.1 * uniform(random);
+    const DealiiGrid<dim> grid(problem.triangulation);
+    const DealiiField<dim, DoubleVector> field(grid, problem.dofs, problem.values);
+    const HighOrder data(grid, field);
+    EXPECT_EQ(data.greatest_degree(), int(fe.degree));
+    EXPECT_GT(data.jump(), 0.05);
+    EXPECT_LT(data.jump(), 2);
+    const VirtualRefinement fine(data, {.tolerance = tolerance, .depth = 6});
+    const auto result =
+        isosurface<dim>(fine, 0.3, under(fine.criterion(), fine.bounds()), {.verify = true});
+    EXPECT_GT(result.surface.simplices.size(), 100U);
+    expect_closed(result.surface);
+    if (result.counts.limited == 0) {
+        EXPECT_LE(result.error_bound, (tolerance + data.jump()) * (1 + 1e-6));
+    }
+}
+
+TEST(DealiiHighOrder, DiscontinuousElementsAreClosed) {
+    expect_jumps_are_closed<3>(dealii::FE_DGQ<3>(1), Domain::cube, 0.1);
+    expect_jumps_are_closed<3>(dealii::FE_DGQ<3>(3), Domain::cube, 0.1);
+    expect_jumps_are_closed<2>(dealii::FE_DGQ<2>(4), Domain::cube, 0.05);
+    expect_jumps_are_closed<3>(dealii::FE_SimplexDGP<3>(2), Domain::simplices, 0.1);
+    expect_jumps_are_closed<2>(dealii::FE_SimplexDGP<2>(2), Domain::simplices, 0.05);
+}
+
+/// On a mesh that conforms a continuous function has the same values in both spaces.
+TEST(DealiiHighOrder, DiscontinuousElementsHaveTheValuesOfContinuousOnes) {
+    std::mt19937 random(4);
+    std::vector<Point> points(100);
+    for (Point& x : points) x = {1.9 * uniform(random) - 0.95, uniform(random), uniform(random)};
+    const auto values = [&](const dealii::FiniteElement<3>& fe) {
+        const Problem<3> problem(fe, Domain::simplices);
+        const DealiiGrid<3> grid(problem.triangulation);
+        const DealiiField<3, DoubleVector> field(grid, problem.dofs, problem.values);
+        const HighOrder data(grid, field);
+        EXPECT_LE(data.jump(), 1e-11);
+        return probe(data, points).values;
+    };
+    const auto continuous = values(dealii::FE_SimplexP<3>(2));
+    const auto discontinuous = values(dealii::FE_SimplexDGP<3>(2));
+    ASSERT_EQ(continuous.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_NEAR(continuous[i], discontinuous[i], 1e-12);
+    }
 }
 
 TEST(DealiiHighOrder, ComponentsOfSystemsAreToldApart) {

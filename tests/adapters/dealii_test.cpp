@@ -420,11 +420,18 @@ TEST(Dealii, RefusesWhatItCannotRead) {
     DoFHandler<3> discontinuous(*p.triangulation);
     discontinuous.distribute_dofs(dealii::FE_DGQ<3>(1));
     const DoubleVector of_cells(discontinuous.n_dofs());
-    expect_refused([&] { Field(grid, discontinuous, of_cells); }, "no nodal values at vertices");
+    const Field jumps(grid, discontinuous, of_cells);
+    expect_refused([&] { (void)isosurface(grid, jumps, 0.1); },
+                   "component 0 of FE_DGQ<3>(1) has no values at vertices: it is drawn within an "
+                   "error");
+    discontinuous.distribute_dofs(dealii::FE_DGQ<3>(0));
+    const DoubleVector one_each(discontinuous.n_dofs());
+    expect_refused([&] { Field(grid, discontinuous, one_each); }, "no nodal values at vertices");
     DoFHandler<3> hp(*p.triangulation);
     hp.distribute_dofs(dealii::hp::FECollection<3>(FE_Q<3>(1), dealii::FE_DGQ<3>(2)));
     const DoubleVector of_hp(hp.n_dofs());
-    expect_refused([&] { Field(grid, hp, of_hp); }, "no nodal values at vertices");
+    const Field jumps_hp(grid, hp, of_hp);
+    expect_refused([&] { (void)isosurface(grid, jumps_hp, 0.1); }, "has no values at vertices");
 
     Triangulation<3> anisotropic;
     dealii::GridGenerator::hyper_cube(anisotropic);

@@ -7,6 +7,10 @@
 #include <dune/functions/gridfunctions/discreteglobalbasisfunction.hh>
 #include <dune/istl/bvector.hh>
 
+#include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/high_order.hpp>
+
+#include "closedness.hpp"
 #include "dune_ug_grids.hpp"
 
 using namespace nestgrid;
@@ -50,6 +54,50 @@ void expect_function_is_seen() {
         EXPECT_EQ(a.vertices, b.vertices);
         EXPECT_EQ(a.simplices, b.simplices);
     }
+}
+
+double cubic(const Place& x) { return quadratic(x) + 0.4 * x[0] * x[0] * x[1]; }
+
+/// A function of order p that is one of the space: what is drawn is within the error of it.
+template <int order>
+void expect_polynomials_are_drawn(const UGGrid<3>& solver, double (*function)(const Place&)) {
+    const DuneGrid grid(solver);
+    const Dune::Functions::LagrangeBasis<UGGrid<3>::LeafGridView, order> basis(
+        solver.leafGridView());
+    Dune::BlockVector<Dune::FieldVector<double, 1>> coefficients;
+    Dune::Functions::interpolate(basis, coefficients, function);
+    const auto u = Dune::Functions::makeDiscreteGlobalBasisFunction<double>(basis, coefficients);
+    const DunePolynomialField field(grid, u, order);
+    const auto violation = check_grid(grid, field);
+    ASSERT_FALSE(violation) << violation->sentence;
+    const DunePolynomialField too_low(grid, u, order - 1);
+    EXPECT_TRUE(check_grid(grid, too_low).has_value());
+    const HighOrder data(grid, field);
+    EXPECT_EQ(data.greatest_degree(), order);
+    EXPECT_LE(data.jump(), 1e-12);
+    const double error = 1e-3;
+    const auto result = isosurface<3>({grid, field}, 0, {.threshold = error, .indicator = "error"});
+    expect_closed(result.surface);
+    EXPECT_GT(result.surface.simplices.size(), 1000U);
+    EXPECT_LE(result.error_bound, error * (1 + 1e-6));
+    double greatest = 0;
+    for (const auto& t : result.surface.simplices) {
+        Point middle{0, 0, 0};
+        for (const auto v : t) middle = middle + (1.0 / 3) * result.surface.vertices[v];
+        greatest = std::max(greatest, std::abs(function({middle[0], middle[1], middle[2]})));
+    }
+    EXPECT_LE(greatest, result.error_bound + 1e-12);
+    EXPECT_GT(greatest, error / 100);
+}
+
+TEST(DuneFunctions, PolynomialsAreDrawnWithinTheError) {
+    const auto tetrahedra = simplices<3>(2);
+    tetrahedra->globalRefine(1);
+    expect_polynomials_are_drawn<2>(*tetrahedra, quadratic);
+    expect_polynomials_are_drawn<3>(*tetrahedra, cubic);
+    // On hexahedra dune-functions has orders 1 and 2.
+    const auto hexahedra = hanging_cubes<3>(2, 1, 0.3);
+    expect_polynomials_are_drawn<2>(*hexahedra, quadratic);
 }
 
 TEST(DuneFunctions, LagrangeOfFirstOrder) { expect_function_is_seen<1>(); }

@@ -7,7 +7,8 @@
 namespace nestgrid {
 
 /// Components of a finite element function, from the solver's own vector: at the vertices, and, of
-/// elements of higher degree, everywhere (degree() and evaluate(), high_order.hpp).
+/// elements of higher degree, everywhere (degree() and evaluate(), high_order.hpp). Discontinuous
+/// elements have no values at vertices, and are drawn within an error alone, or by HighOrder.
 template <int dim, class Vector, int component_count = 1, int spacedim = dim>
 class DealiiField {
 public:
@@ -16,17 +17,24 @@ public:
     static constexpr int components = component_count;
 
     /// \param which components of the finite element, in the order in which the field gives them
-    /// \throw InvalidInput where the degrees of freedom are not those of the grid or of nodes at
-    ///        its vertices, or where the vector does not have one entry for each
+    /// \throw InvalidInput where the degrees of freedom are not those of the grid or of nodes, or
+    ///        where the vector does not have one entry for each
     DealiiField(const Grid& grid, const dealii::DoFHandler<dim, spacedim>& dofs,
                 const Vector& values, const std::array<unsigned, component_count>& which = {});
 
     /// \throw GridError where the triangulation has changed since the field was made, or the vector
     ///        or the degrees of freedom have
-    /// \throw InvalidInput where this process needs a value of another one that the vector lacks
+    /// \throw InvalidInput where this process needs a value of another one that the vector lacks,
+    /// and
+    ///        where a component is discontinuous
     NodeMask coarse_values(std::size_t i, std::span<value_type> out) const {
         made_for_.require_same(*grid_, "the field");
         grid_->require_current();
+        if (!discontinuous_.empty()) {
+            throw InvalidInput(discontinuous_ +
+                               " has no values at vertices: it is drawn within an error, by "
+                               "HighOrder");
+        }
         if (values_->size() != dofs_->n_dofs() || dofs_->n_dofs() != count_) {
             throw GridError(
                 "the vector or the degrees of freedom have changed since the field "
@@ -132,7 +140,7 @@ private:
         int degree = 1;
     };
 
-    Components find(const dealii::FiniteElement<dim, spacedim>& fe) const;
+    Components find(const dealii::FiniteElement<dim, spacedim>& fe);
     std::vector<Node> find_nodes(const dealii::FiniteElement<dim, spacedim>& fe, unsigned component,
                                  unsigned of_element) const;
     static bool are_at(std::span<const Node> nodes, std::span<const Point> places);
@@ -147,6 +155,7 @@ private:
     std::array<unsigned, component_count> which_{};
     std::vector<Components> elements_;  // one, or those of the hp collection
     dealii::IndexSet owned_;            // entries of the vector that this process has
+    std::string discontinuous_;         // the name of a component that has no values at vertices
 };
 
 template <int dim, class Vector, int component_count, int spacedim>
@@ -187,10 +196,10 @@ void DealiiField<dim, Vector, component_count, spacedim>::require_here(
     }
 }
 
-/// \throw InvalidInput where a component has no nodes at vertices
+/// \throw InvalidInput where a component has no nodes, or one value in a cell
 template <int dim, class Vector, int component_count, int spacedim>
 auto DealiiField<dim, Vector, component_count, spacedim>::find(
-    const dealii::FiniteElement<dim, spacedim>& fe) const -> Components {
+    const dealii::FiniteElement<dim, spacedim>& fe) -> Components {
     Components result;
     const unsigned per_vertex = fe.n_dofs_per_vertex();
     for (std::size_t c = 0; c < which_.size(); ++c) {
@@ -198,19 +207,21 @@ auto DealiiField<dim, Vector, component_count, spacedim>::find(
             throw InvalidInput("the finite element has " + std::to_string(fe.n_components()) +
                                " components and no number " + std::to_string(which_[c]));
         }
-        bool found = false;
-        unsigned base = 0;
-        for (unsigned i = 0; i < per_vertex && !found; ++i) {
-            // A node of the component at the vertex itself.
-            if (!fe.is_primitive(i) || fe.system_to_component_index(i).first != which_[c]) continue;
-            base = fe.system_to_base_index(i).first.first;
-            found = fe.base_element(base).has_support_points();
-            result.offset[c] = i;
+        // The first degree of freedom of the component. Those at vertices come first of all.
+        unsigned first = 0;
+        while (
+            first < fe.n_dofs_per_cell() &&
+            (!fe.is_primitive(first) || fe.system_to_component_index(first).first != which_[c])) {
+            ++first;
         }
-        if (!found) {
-            throw InvalidInput("component " + std::to_string(which_[c]) + " of " + fe.get_name() +
-                               " has no nodal values at vertices");
+        const std::string name = "component " + std::to_string(which_[c]) + " of " + fe.get_name();
+        if (first == fe.n_dofs_per_cell()) throw InvalidInput(name + " has no nodes");
+        const unsigned base = fe.system_to_base_index(first).first.first;
+        if (!fe.base_element(base).has_support_points() || fe.base_element(base).degree == 0) {
+            throw InvalidInput(name + " has no nodal values at vertices");
         }
+        if (first >= per_vertex) discontinuous_ = name;
+        result.offset[c] = first;
         result.nodes[c] = find_nodes(fe, which_[c], base);
         result.degree = std::max(result.degree, static_cast<int>(fe.base_element(base).degree));
     }

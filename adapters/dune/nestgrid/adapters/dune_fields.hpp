@@ -128,26 +128,61 @@ public:
         return 0;
     }
 
+protected:
+    /// Values at points of the reference element of a leaf.
+    void put_values(const Element& leaf, std::span<const Point> reference,
+                    std::span<double> out) const {
+        Dune::FieldVector<typename Grid::Solver::ctype, Grid::dimension> local;
+        const auto put = [&](const auto& function) {
+            for (std::size_t i = 0; i < reference.size(); ++i) {
+                for (std::size_t d = 0; d < local.size(); ++d) local[d] = reference[i][d];
+                out[i] = function(local);
+            }
+        };
+        if constexpr (requires { function_(leaf, local); }) {
+            put([&](const auto& at) { return function_(leaf, at); });
+        } else {
+            auto on_leaf = localFunction(function_);
+            on_leaf.bind(leaf);
+            put(on_leaf);
+        }
+    }
+
 private:
     double value(const Element& e, int corner, Context& context) const {
-        return grid_->at_leaf(e, corner, context, [&](const Element& leaf, int at) -> double {
+        return grid_->at_leaf(e, corner, context, [&](const Element& leaf, int at) {
             const Shape shape = detail::dune_shape(leaf.type());
             const Point& x = topology(shape).reference[static_cast<std::size_t>(at)];
-            Dune::FieldVector<typename Grid::Solver::ctype, Grid::dimension> local;
-            for (std::size_t d = 0; d < local.size(); ++d) local[d] = x[d];
-            if constexpr (requires { function_(leaf, local); }) {
-                return function_(leaf, local);
-            } else {
-                auto on_leaf = localFunction(function_);
-                on_leaf.bind(leaf);
-                return on_leaf(local);
-            }
+            double result = 0;
+            put_values(leaf, std::span(&x, 1), std::span(&result, 1));
+            return result;
         });
     }
 
     const Grid* grid_;
     Function function_;
     detail::MadeFor made_for_;
+};
+
+/// A function that is a polynomial on each leaf, drawn between vertices, too (high_order.hpp). It
+/// may jump from leaf to leaf, if it is drawn within an error.
+template <class Grid, class Function>
+class DunePolynomialField : public DuneFunctionField<Grid, Function> {
+public:
+    using Element = typename Grid::Element;
+
+    /// \param degree of all leaves, 1 to 8
+    DunePolynomialField(const Grid& grid, Function function, int degree)
+        : DuneFunctionField<Grid, Function>(grid, std::move(function)), degree_{degree} {}
+
+    int degree(const Element&) const { return degree_; }
+    void evaluate(const Element& leaf, std::span<const Point> reference,
+                  std::span<double> out) const {
+        this->put_values(leaf, reference, out);
+    }
+
+private:
+    int degree_;
 };
 
 }  // namespace nestgrid
