@@ -42,6 +42,12 @@ void refuse_first(std::span<const Refused> all) {
 }  // namespace
 
 template <class Real>
+bool has_all_leaves(const Hierarchy<Real>& hierarchy) {
+    return !hierarchy.offers(Feature::presence) ||
+           find_partly_elsewhere(hierarchy) == hierarchy.coarse_count();
+}
+
+template <class Real>
 void require_made_for_parts(const Hierarchy<Real>& hierarchy, bool on_ranks) {
     if (on_ranks && hierarchy.facts().shared != nullptr) return;
     hierarchy.facts().require_one_process("what is asked for");
@@ -106,6 +112,8 @@ std::string asked_for(std::span<const Level<Real>> levels, const Criterion& crit
     return asked + (options.cap ? ", with caps" : "");
 }
 
+template bool has_all_leaves(const Hierarchy<float>&);
+template bool has_all_leaves(const Hierarchy<double>&);
 template void require_made_for_parts(const Hierarchy<float>&, bool);
 template void require_made_for_parts(const Hierarchy<double>&, bool);
 template void require_same_state(const Hierarchy<float>&);

@@ -18,6 +18,10 @@ namespace nestgrid::engine {
 
 using nestgrid::detail::refuse_on_ranks;
 
+/// Whether this process has all leaves of the grid.
+template <class Real>
+bool has_all_leaves(const Hierarchy<Real>& hierarchy);
+
 /// \throw GridError where elements are elsewhere and the grid has no ranks
 /// \throw InvalidInput where it has, and the walk is not made for them
 template <class Real>

@@ -44,8 +44,10 @@ bool may_differ(const Hierarchy<float>& grid) {
     return grid.offers(Feature::own_keys) || grid.offers(Feature::new_positions);
 }
 
-/// All nodes of the elements that this rank visits, with their places where these may differ.
+/// The nodes that other ranks may have: all nodes of the elements that this rank visits, with their
+/// places where these may differ; none where this rank has all leaves.
 std::vector<SharedNodes::Candidate> nodes_of(const Hierarchy<float>& grid) {
+    if (has_all_leaves(grid)) return {};
     const bool places = may_differ(grid);
     const Walk<float> walk(grid,
                            {.values = false, .keys = true, .positions = places, .on_ranks = true});

@@ -191,7 +191,7 @@ std::shared_ptr<const FarValues> share_values(const Hierarchy<Real>& field) {
     together(shared, asked, [&] {
         require_same_state(field);
         if (field.facts().decodes) refuse_on_ranks("a compressed field");
-        collect(field, values);
+        if (shared->count() > 0) collect(field, values);
     });
     values.agree();
     const auto far = std::make_shared<FarValues>(components);

@@ -40,9 +40,13 @@ public:
     /// Collects the nodes of this rank, and tells the parts of leaves that others may have, too.
     void collect() {
         for_each_element(walk_, false, [&](const ElementView<float>& view, const Split& split) {
-            if (split.rule == nullptr) return tell_leaf(view);
+            if (split.rule == nullptr) {
+                if (shared_->count() > 0) tell_leaf(view);
+                return;
+            }
             const std::span<const NodeKey> keys = walk_.split_keys(view, split, keys_);
             probe_.add_nodes(*split.rule, keys, split.keys);
+            if (shared_->count() == 0) return;
             for (const auto& face : faces_of(*split.rule)) tell({keys, face.corner, 4, false});
         });
         probe_.finish();
