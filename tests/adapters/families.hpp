@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The families of stored hierarchies that typed tests run over, and what most of these begin with.
+// The families of stored hierarchies that typed tests run over. Those of blocks have a header of
+// this name in tests/adapters/blocks.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include "closedness.hpp"
-#include "sample_grids.hpp"
+#include "fields_at_sphere.hpp"
 
 namespace nestgrid_test {
 
@@ -15,19 +13,5 @@ using Families =
     testing::Types<BisectionTriangles, BisectionTetrahedra, RedGreenTriangles, RedGreenTetrahedra,
                    RedGreenMixed2, RedGreenMixed3, BalancedQuadtree, UnbalancedQuadtree,
                    BalancedOctree, UnbalancedOctree, Prisms>;
-
-/// Calls test(grid, samples) for the grids of a family, refined at the sphere, and each of the
-/// catching fields on them.
-/// \param levels of the refinement; families bisect `steps` times a level
-template <class Family, class Test>
-void for_each_field_at_sphere(int levels, unsigned seed, Test&& test) {
-    for (auto& grid : Family::grids()) {
-        refine_at_sphere(grid, levels * Family::steps);
-        for (const NodalSamples& samples : catching_fields(grid.node_positions(), seed)) {
-            SCOPED_TRACE(samples.name);
-            test(grid, samples);
-        }
-    }
-}
 
 }  // namespace nestgrid_test
