@@ -10,6 +10,7 @@
 
 #include <nestgrid/error.hpp>
 
+#include <ranks/agreement.hpp>
 #include <threads/thread_executor.hpp>
 
 #include "calls.hpp"
@@ -106,17 +107,32 @@ bool coarse_simplices(const Hierarchy<Real>& hierarchy) {
     return true;
 }
 
+/// The options as far as the caller's struct goes, the rest empty.
+/// \param given may be NULL
+/// \throw InvalidInput where it does not say how large it is
+nestgrid_options complete(const nestgrid_options* given) {
+    nestgrid_options options{};
+    if (given == nullptr) return options;
+    if (given->size < sizeof(given->size)) {
+        throw InvalidInput("the size of the options says " + std::to_string(given->size) +
+                           " bytes: set it to that of the struct");
+    }
+    std::memcpy(&options, given, std::min(given->size, sizeof(options)));
+    return options;
+}
+
 }  // namespace
 
+void tell_other_ranks(const nestgrid_options* given) {
+    const engine::Outcome own = engine::Outcome::of_exception();
+    const nestgrid_options options = complete(given);
+    if (options.ranks == nullptr) return;
+    RanksInC ranks(*options.ranks);
+    engine::settle(ranks, "what it refuses", own);
+}
+
 Asked::Asked(const nestgrid_options* given, const nestgrid_grid* grid, const nestgrid_field* field)
-    : grid_{grid}, field_{field} {
-    if (given != nullptr) {
-        if (given->size < sizeof(given->size)) {
-            throw InvalidInput("the size of the options says " + std::to_string(given->size) +
-                               " bytes: set it to that of the struct");
-        }
-        std::memcpy(&options_, given, std::min(given->size, sizeof(options_)));
-    }
+    : options_{complete(given)}, grid_{grid}, field_{field} {
     require_range(options_);
     require_one_wish(options_);
     if (options_.lens != nullptr) lens_ = lens_of(*options_.lens);
@@ -162,6 +178,24 @@ Projection Asked::projection(const FieldOnGrid& field, bool level_sets) const {
             .keeps_distance = options_.keep_distance != 0,
             .slice_distance = options_.slice_distance,
             .colour_tolerance = options_.colour_tolerance};
+}
+
+void Asked::require_one_process(const std::string& what) const {
+    if (options_.ranks != nullptr) detail::refuse_on_ranks(what);
+}
+
+FieldOnGrid Asked::as_it_is_drawn(const FieldOnGrid& field) const {
+    if (options_.ranks == nullptr) return field;
+    if (!field.facts().offers(Feature::presence)) {
+        throw InvalidInput(
+            "the table of the grid lacks the function 'presence', which says which leaves this "
+            "rank has");
+    }
+    talks_ = true;
+    part_ = options_.prerolls == nullptr
+                ? std::make_shared<const PartOnRanks>(*options_.ranks, *grid_, field)
+                : options_.prerolls->part_of(*options_.ranks, *grid_, field);
+    return part_->on_ranks(field);
 }
 
 Prerolls& Asked::kept_prerolls(const FieldOnGrid& field) const {

@@ -10,6 +10,8 @@
 #include <nestgrid/algorithms/isosurface.h>
 #include <nestgrid/algorithms/drawing.hpp>
 
+#include "ranks_in_c.hpp"
+
 namespace nestgrid {
 
 /// A surface that a C code owns, by the pointer `owner` of its nestgrid_surface.
@@ -17,13 +19,17 @@ template <int dimension>
 struct Drawn {
     Projected<Isosurface<dimension>> result;
     std::string budget_text;
+    std::shared_ptr<const PartOnRanks> part;  ///< where ranks have drawn it
 };
 
 /// Hands a surface to a C code, which frees it.
+/// \param part what ranks share that have drawn it; null without ranks
 template <int dimension>
-void hand_over(Projected<Isosurface<dimension>> result, nestgrid_surface& out) {
+void hand_over(Projected<Isosurface<dimension>> result, std::shared_ptr<const PartOnRanks> part,
+               nestgrid_surface& out) {
     const std::string reason = result.budget_reason();
-    auto drawn = std::make_unique<Drawn<dimension>>(Drawn<dimension>{std::move(result), reason});
+    auto drawn = std::make_unique<Drawn<dimension>>(
+        Drawn<dimension>{std::move(result), reason, std::move(part)});
     const Isosurface<dimension>& kept = drawn->result;
     out.vertex_count = kept.surface.vertices.size();
     out.simplex_count = kept.surface.simplices.size();

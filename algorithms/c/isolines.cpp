@@ -60,14 +60,14 @@ extern "C" int nestgrid_isolines(const nestgrid_grid* grid, const nestgrid_field
                                  const double* values, size_t count,
                                  const nestgrid_options* options, nestgrid_lines* out,
                                  char* message, size_t message_size) {
-    return without_exceptions(message, message_size, [&] {
-        begin_result(out);
-        const auto isovalues = values_of(values, count);
-        const Asked asked(options, grid, field);
-        return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
-            return hand_over(draw(hierarchy, isovalues, asked), out);
+    const auto begin = [&] { begin_result(out); };
+    return with_options(
+        options, grid, field, message, message_size, begin, [&](const Asked& asked) {
+            const auto isovalues = values_of(values, count);
+            return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
+                return hand_over(draw(hierarchy, isovalues, asked), out);
+            });
         });
-    });
 }
 
 extern "C" int nestgrid_surface_isolines(const nestgrid_surface* surface, size_t attribute,

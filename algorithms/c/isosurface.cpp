@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/join_pieces.hpp>
 
 #include "asked.hpp"
 #include "calls.hpp"
@@ -22,12 +23,10 @@ int draw(const Hierarchy<Real>& hierarchy, const Asked& asked, nestgrid_surface&
          const Draw& of_dimension) {
     const Projection projection = asked.projection(hierarchy, true);
     const auto in = [&](auto dimension) {
-        hand_over(asked.with_prerolls(hierarchy,
-                                      [&](Prerolls& prerolls, const Work& work) {
-                                          return of_dimension(dimension, prerolls, projection,
-                                                              asked.how_to_draw(), work);
-                                      }),
-                  out);
+        auto drawn = asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
+            return of_dimension(dimension, prerolls, projection, asked.how_to_draw(), work);
+        });
+        hand_over(std::move(drawn), asked.part(), out);
     };
     if (hierarchy.facts().dimension == 2) {
         in(std::integral_constant<int, 2>{});
@@ -62,7 +61,8 @@ int draw_height_field(const Hierarchy<Real>& hierarchy, double scale, const Aske
     result.surface = std::move(graph.surface);
     result.counts = graph.counts;
     result.cancelled = graph.cancelled;
-    hand_over(std::move(result), out);
+    result.names = std::move(graph.names);
+    hand_over(std::move(result), asked.part(), out);
     return 0;
 }
 
@@ -141,11 +141,10 @@ extern "C" int nestgrid_isosurface(const nestgrid_grid* grid, const nestgrid_fie
                                    double isovalue, double threshold, nestgrid_surface* out,
                                    char* message, size_t message_size) {
     *out = {};
-    return without_exceptions(message, message_size, [&] {
-        nestgrid_options options{};
-        options.size = sizeof(options);
-        options.threshold = threshold;
-        const Asked asked(&options, grid, field);
+    nestgrid_options options{};
+    options.size = sizeof(options);
+    options.threshold = threshold;
+    return with_options(&options, grid, field, message, message_size, [&](const Asked& asked) {
         return with_tables(grid, field, {}, [&](const auto& hierarchy) {
             require_one_component(hierarchy.facts());
             return draw_isosurface(hierarchy, isovalue, asked, *out);
@@ -157,8 +156,7 @@ extern "C" int nestgrid_isosurface_with(const nestgrid_grid* grid, const nestgri
                                         double isovalue, const nestgrid_options* options,
                                         nestgrid_surface* out, char* message, size_t message_size) {
     *out = {};
-    return without_exceptions(message, message_size, [&] {
-        const Asked asked(options, grid, field);
+    return with_options(options, grid, field, message, message_size, [&](const Asked& asked) {
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             return draw_isosurface(hierarchy, isovalue, asked, *out);
         });
@@ -169,8 +167,7 @@ extern "C" int nestgrid_isoband(const nestgrid_grid* grid, const nestgrid_field*
                                 double high, const nestgrid_options* options, nestgrid_surface* out,
                                 char* message, size_t message_size) {
     *out = {};
-    return without_exceptions(message, message_size, [&] {
-        const Asked asked(options, grid, field);
+    return with_options(options, grid, field, message, message_size, [&](const Asked& asked) {
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             return draw(hierarchy, asked, *out,
                         [&](auto dimension, Prerolls& prerolls, const auto&... how) {
@@ -184,8 +181,7 @@ extern "C" int nestgrid_height_field(const nestgrid_grid* grid, const nestgrid_f
                                      double scale, const nestgrid_options* options,
                                      nestgrid_surface* out, char* message, size_t message_size) {
     *out = {};
-    return without_exceptions(message, message_size, [&] {
-        const Asked asked(options, grid, field);
+    return with_options(options, grid, field, message, message_size, [&](const Asked& asked) {
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             return draw_height_field(hierarchy, scale, asked, *out);
         });
@@ -196,24 +192,25 @@ extern "C" int nestgrid_measure(const nestgrid_grid* grid, const nestgrid_field*
                                 const nestgrid_surface* surface, double isovalue, uint64_t points,
                                 const nestgrid_options* options, nestgrid_measured* out,
                                 char* message, size_t message_size) {
-    return without_exceptions(message, message_size, [&] {
-        begin_told(out, "the measured errors");
-        if (surface == nullptr || surface->owner == nullptr || surface->dimension != 3) {
-            throw InvalidInput("there is no isosurface in space to measure");
-        }
-        const Surface<3>& drawn = static_cast<Drawn<3>*>(surface->owner)->result.surface;
-        const Asked asked(options, grid, field);
-        return with_tables(grid, field, {}, [&](const auto& hierarchy) {
-            const MeasuredError measured =
-                asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
-                    const auto count = static_cast<std::size_t>(points);
-                    return measure_error(prerolls, drawn, isovalue,
-                                         count == 0 ? default_points : count, work);
-                });
-            write_result(in_c(measured), out);
-            return 0;
+    const auto begin = [&] { begin_told(out, "the measured errors"); };
+    return with_options(
+        options, grid, field, message, message_size, begin, [&](const Asked& asked) {
+            asked.require_one_process("an error that is measured");
+            if (surface == nullptr || surface->owner == nullptr || surface->dimension != 3) {
+                throw InvalidInput("there is no isosurface in space to measure");
+            }
+            const Surface<3>& drawn = static_cast<Drawn<3>*>(surface->owner)->result.surface;
+            return with_tables(grid, field, {}, [&](const auto& hierarchy) {
+                const MeasuredError measured =
+                    asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
+                        const auto count = static_cast<std::size_t>(points);
+                        return measure_error(prerolls, drawn, isovalue,
+                                             count == 0 ? default_points : count, work);
+                    });
+                write_result(in_c(measured), out);
+                return 0;
+            });
         });
-    });
 }
 
 extern "C" int nestgrid_details(const nestgrid_surface* surface, nestgrid_surface_details* out,
@@ -228,6 +225,46 @@ extern "C" int nestgrid_details(const nestgrid_surface* surface, nestgrid_surfac
                      out);
         return 0;
     });
+}
+
+namespace {
+
+template <int dimension>
+JoinedPiece join(const Drawn<dimension>& piece) {
+    if (!piece.part) {
+        throw InvalidInput("the surface was drawn without ranks: it is the whole");
+    }
+    return detail::join_pieces(piece.result.surface, piece.result.names, piece.part->shared());
+}
+
+}  // namespace
+
+extern "C" int nestgrid_join(const nestgrid_surface* piece, nestgrid_joined* out, char* message,
+                             size_t message_size) {
+    return without_exceptions(message, message_size, [&] {
+        begin_result(out);
+        if (piece == nullptr || piece->owner == nullptr) {
+            throw InvalidInput("there is no piece of a surface to join");
+        }
+        auto owned = std::make_unique<JoinedPiece>(
+            piece->dimension == 2 ? join(*static_cast<Drawn<2>*>(piece->owner))
+                                  : join(*static_cast<Drawn<3>*>(piece->owner)));
+        nestgrid_joined told{};
+        told.numbers = data_or_null(owned->number);
+        told.owners = data_or_null(owned->owner);
+        told.vertices = owned->vertices;
+        told.simplices = owned->simplices;
+        told.components = owned->components;
+        told.open = owned->open;
+        told.owner = owned.release();
+        write_result(told, out);
+        return 0;
+    });
+}
+
+extern "C" void nestgrid_joined_free(nestgrid_joined* joined) {
+    delete static_cast<JoinedPiece*>(joined->owner);
+    write_result(nestgrid_joined{}, joined);
 }
 
 extern "C" void nestgrid_surface_free(nestgrid_surface* surface) {

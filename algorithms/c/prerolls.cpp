@@ -16,6 +16,14 @@ nestgrid::Prerolls& nestgrid_prerolls::of(const nestgrid_grid& grid, const nestg
     return *prerolls_;
 }
 
+std::shared_ptr<const nestgrid::PartOnRanks> nestgrid_prerolls::part_of(
+    const nestgrid_ranks& ranks, const nestgrid_grid& grid,
+    const nestgrid::FieldOnGrid& hierarchy) {
+    const std::scoped_lock lock(mutex_);
+    if (!part_) part_ = std::make_shared<const nestgrid::PartOnRanks>(ranks, grid, hierarchy);
+    return part_;
+}
+
 extern "C" int nestgrid_prerolls_make(nestgrid_prerolls** out, char* message, size_t message_size) {
     return nestgrid::without_exceptions(message, message_size, [&] {
         if (out == nullptr) throw nestgrid::InvalidInput("the result is NULL");

@@ -10,6 +10,8 @@
 #include <nestgrid/algorithms/options.h>
 #include <nestgrid/algorithms/prerolls.hpp>
 
+#include "ranks_in_c.hpp"
+
 /// Several calls may ask at once; the one that comes first computes.
 struct nestgrid_prerolls {
 public:
@@ -19,9 +21,15 @@ public:
     nestgrid::Prerolls& of(const nestgrid_grid& grid, const nestgrid_field& field,
                            const nestgrid::FieldOnGrid& hierarchy);
 
+    /// What ranks share of the tables that are asked for first. Collective.
+    std::shared_ptr<const nestgrid::PartOnRanks> part_of(const nestgrid_ranks& ranks,
+                                                         const nestgrid_grid& grid,
+                                                         const nestgrid::FieldOnGrid& hierarchy);
+
 private:
     std::mutex mutex_;
     const void* grid_ = nullptr;  // `self` of the tables
     const void* field_ = nullptr;
+    std::shared_ptr<const nestgrid::PartOnRanks> part_;
     std::optional<nestgrid::Prerolls> prerolls_;
 };

@@ -61,14 +61,14 @@ int hand_over(ProbeResult result, nestgrid_probed* out) {
 extern "C" int nestgrid_probe(const nestgrid_grid* grid, const nestgrid_field* field,
                               const double* points, size_t count, const nestgrid_options* options,
                               nestgrid_probed* out, char* message, size_t message_size) {
-    return without_exceptions(message, message_size, [&] {
-        begin_result(out);
-        const std::vector<Point> at = points_of(points, count);
-        const Asked asked(options, grid, field);
-        return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
-            return hand_over(ask(hierarchy, at, asked), out);
+    const auto begin = [&] { begin_result(out); };
+    return with_options(
+        options, grid, field, message, message_size, begin, [&](const Asked& asked) {
+            const std::vector<Point> at = points_of(points, count);
+            return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
+                return hand_over(ask(hierarchy, at, asked), out);
+            });
         });
-    });
 }
 
 extern "C" void nestgrid_probed_free(nestgrid_probed* probed) {

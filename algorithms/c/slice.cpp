@@ -53,12 +53,10 @@ int draw(const nestgrid_grid* grid, const nestgrid_field* field, const Asked& as
     return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
         hierarchy.facts().require_dimension(3);
         const Projection projection = asked.projection(hierarchy, false);
-        hand_over(asked.with_prerolls(hierarchy,
-                                      [&](Prerolls& prerolls, const Work& work) {
-                                          return slice(prerolls, projection, asked.how_to_draw(),
-                                                       work);
-                                      }),
-                  out);
+        auto drawn = asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
+            return slice(prerolls, projection, asked.how_to_draw(), work);
+        });
+        hand_over(std::move(drawn), asked.part(), out);
         return 0;
     });
 }
@@ -70,12 +68,11 @@ extern "C" int nestgrid_slice(const nestgrid_grid* grid, const nestgrid_field* f
                               const nestgrid_options* options, nestgrid_surface* out, char* message,
                               size_t message_size) {
     *out = {};
-    return without_exceptions(message, message_size, [&] {
+    return with_options(options, grid, field, message, message_size, [&](const Asked& asked) {
         if (through == nullptr || normal == nullptr) {
             throw InvalidInput("the point or the normal of the plane is NULL");
         }
         const Plane plane({through[0], through[1], through[2]}, {normal[0], normal[1], normal[2]});
-        const Asked asked(options, grid, field);
         return draw(grid, field, asked, *out, [&](Prerolls& prerolls, const auto&... how) {
             return slice(prerolls, plane, how...);
         });
@@ -87,9 +84,8 @@ extern "C" int nestgrid_slice_along(const nestgrid_grid* grid, const nestgrid_fi
                                     const nestgrid_options* options, nestgrid_surface* out,
                                     char* message, size_t message_size) {
     *out = {};
-    return without_exceptions(message, message_size, [&] {
+    return with_options(options, grid, field, message, message_size, [&](const Asked& asked) {
         const FunctionInC in_c(function);
-        const Asked asked(options, grid, field);
         return draw(grid, field, asked, *out, [&](Prerolls& prerolls, const auto&... how) {
             return slice(prerolls, in_c, how...);
         });
@@ -100,8 +96,7 @@ extern "C" int nestgrid_boundary_surface(const nestgrid_grid* grid, const nestgr
                                          const nestgrid_options* options, nestgrid_surface* out,
                                          char* message, size_t message_size) {
     *out = {};
-    return without_exceptions(message, message_size, [&] {
-        const Asked asked(options, grid, field);
+    return with_options(options, grid, field, message, message_size, [&](const Asked& asked) {
         return draw(grid, field, asked, *out, [&](Prerolls& prerolls, const auto&... how) {
             return boundary_surface(prerolls, how...);
         });

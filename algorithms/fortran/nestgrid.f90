@@ -1,8 +1,8 @@
 ! SPDX-FileCopyrightText: the nestgrid authors
 ! SPDX-License-Identifier: BSD-3-Clause
 !
-! The tables and functions of nestgrid.h, options.h, isosurface.h, slice.h, isolines.h and probe.h
-! for Fortran codes, with the same names and members. Those headers say what each means; what
+! The tables and functions of nestgrid.h, options.h, ranks.h, isosurface.h, slice.h, isolines.h and
+! probe.h for Fortran codes, with the same names and members. Those headers say what each means; what
 ! Fortran adds:
 !   - functions go into tables by c_funloc(f), where f has bind(c) and the arguments that the header
 !     names; a member that is not set is NULL, or 0, its default;
@@ -27,6 +27,10 @@ module nestgrid
     integer(c_int), parameter :: NESTGRID_DOUBLE = 1
 
     integer(c_int64_t), parameter :: NESTGRID_NO_NODE = -1_c_int64_t
+
+    integer(c_int), parameter :: NESTGRID_MAX = 0
+    integer(c_int), parameter :: NESTGRID_MIN = 1
+    integer(c_int), parameter :: NESTGRID_SUM = 2
 
     integer(c_int), parameter :: NESTGRID_OFFSET = 0
     integer(c_int), parameter :: NESTGRID_DEVIATION = 1
@@ -138,6 +142,23 @@ module nestgrid
         real(c_double) :: threshold = 0.0_c_double
     end type nestgrid_region
 
+    type, bind(c) :: nestgrid_message
+        integer(c_int) :: rank = 0_c_int
+        integer(c_size_t) :: size = 0_c_size_t
+        type(c_ptr) :: bytes = c_null_ptr
+    end type nestgrid_message
+
+    type, bind(c) :: nestgrid_ranks
+        integer(c_size_t) :: size = 0_c_size_t
+        type(c_ptr) :: self = c_null_ptr
+        integer(c_int) :: rank = 0_c_int
+        integer(c_int) :: count = 0_c_int
+        type(c_funptr) :: exchange = c_null_funptr
+        type(c_funptr) :: gather = c_null_funptr
+        type(c_funptr) :: reduce = c_null_funptr
+        type(c_funptr) :: last_error = c_null_funptr
+    end type nestgrid_ranks
+
     type, bind(c) :: nestgrid_options
         integer(c_size_t) :: size = 0_c_size_t
         real(c_double) :: threshold = 0.0_c_double
@@ -163,6 +184,7 @@ module nestgrid
         real(c_double) :: slice_distance = 0.0_c_double
         type(c_ptr) :: region = c_null_ptr
         real(c_double) :: colour_tolerance = 0.0_c_double
+        type(c_ptr) :: ranks = c_null_ptr
     end type nestgrid_options
 
     type, bind(c) :: nestgrid_surface
@@ -212,6 +234,17 @@ module nestgrid
         integer(c_int) :: cancelled = 0_c_int
         type(c_ptr) :: budget_text = c_null_ptr
     end type nestgrid_surface_details
+
+    type, bind(c) :: nestgrid_joined
+        integer(c_size_t) :: size = 0_c_size_t
+        type(c_ptr) :: owner = c_null_ptr
+        type(c_ptr) :: numbers = c_null_ptr
+        type(c_ptr) :: owners = c_null_ptr
+        integer(c_int64_t) :: vertices = 0_c_int64_t
+        integer(c_int64_t) :: simplices = 0_c_int64_t
+        integer(c_int64_t) :: components = 0_c_int64_t
+        integer(c_int64_t) :: open = 0_c_int64_t
+    end type nestgrid_joined
 
     type, bind(c) :: nestgrid_level_function
         integer(c_size_t) :: size = 0_c_size_t
@@ -339,6 +372,20 @@ module nestgrid
             character(kind=c_char), intent(inout) :: message(*)
             integer(c_size_t), value :: message_size
         end function nestgrid_details
+
+        integer(c_int) function nestgrid_join(piece, out, message, message_size) &
+            bind(c, name="nestgrid_join")
+            import
+            type(nestgrid_surface), intent(in) :: piece
+            type(nestgrid_joined), intent(inout) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_join
+
+        subroutine nestgrid_joined_free(joined) bind(c, name="nestgrid_joined_free")
+            import
+            type(nestgrid_joined), intent(inout) :: joined
+        end subroutine nestgrid_joined_free
 
         subroutine nestgrid_surface_free(surface) bind(c, name="nestgrid_surface_free")
             import

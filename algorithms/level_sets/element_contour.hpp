@@ -40,7 +40,7 @@ public:
     }
     static std::size_t simplices_of(const Contour& plain);
     /// Draws a plain contour as draw() would, in the same order and to the last bit, but for
-    /// attributes and references, which it leaves out.
+    /// references, which it leaves out.
     /// \param by_edge takes the vertices where these have names, or is null
     void draw_plainly(DrawnSurface<dimension>& surface, const Contour& contour, unsigned inside,
                       Vertices* by_edge = nullptr);

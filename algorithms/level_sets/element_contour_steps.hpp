@@ -28,7 +28,7 @@ NESTGRID_INLINE void ElementContour<dimension, Real>::draw_plainly(DrawnSurface<
     surface.builder().add_element(view.element(), view.shape, view.level);
     tally_->add(simplices_of(contour));
     const bool names = surface.names_vertices();
-    const bool batches = surface.builder().takes_batches();
+    const bool batches = surface.builder().takes_batches() && cuts_->attribute_count() == 0;
     const unsigned boundary = names ? cuts_->walk().boundary(view) : 0;
     for (std::size_t l = 0; l < contour.loop_count; ++l) {
         const ContourLoop& loop = contour.loop[l];
@@ -54,11 +54,12 @@ auto ElementContour<dimension, Real>::find_vertices(const ContourLoop& loop, uns
         names[i] = surface_->name(cuts_->name(loop.edge[i]));
         surface_->prefetch(names[i]);
     }
+    const bool any = cuts_->attribute_count() > 0;
     Vertices v;
     for (std::size_t i = 0; i < loop.count; ++i) {
         v[i] = surface_->vertex(names[i], [&] {
-            const bool closed = cuts_->view().closed.edge(loop.edge[i]) != nullptr;
-            return closed ? cuts_->cut(loop.edge[i]) : cuts_->plain_cut(loop.edge[i], inside);
+            const bool whole = any || cuts_->view().closed.edge(loop.edge[i]) != nullptr;
+            return whole ? cuts_->cut(loop.edge[i]) : cuts_->plain_cut(loop.edge[i], inside);
         });
     }
     return v;
@@ -96,10 +97,16 @@ void ElementContour<dimension, Real>::draw_between(DrawnSurface<dimension>& surf
 template <int dimension, class Real>
 NESTGRID_INLINE auto ElementContour<dimension, Real>::make_vertices(const ContourLoop& loop,
                                                                     unsigned inside) -> Vertices {
+    Vertices v;
+    if (cuts_->attribute_count() > 0) {
+        for (std::size_t i = 0; i < loop.count; ++i) {
+            v[i] = surface_->add(cuts_->cut(loop.edge[i]));
+        }
+        return v;
+    }
     std::array<Point, max_edges> x;
     cuts_->positions_of(std::span(loop.edge).first(loop.count), inside, x.data());
     Number next = surface_->add_unnamed(std::span(x).first(loop.count), {});
-    Vertices v;
     for (std::size_t i = 0; i < loop.count; ++i) v[i] = next++;
     return v;
 }

@@ -119,6 +119,12 @@ public:
         const auto& [a, b] = view_->topology().edge[edge];
         return u(a) == 0 ? a : u(b) == 0 ? b : no_corner;
     }
+    /// Whether the component has the value of the level at a corner.
+    bool touches_level() const {
+        bool touches = false;
+        for (std::size_t i = 0; i < view_->corner_count(); ++i) touches |= u(i) == 0;
+        return touches;
+    }
     /// A corner as a vertex.
     SurfaceCut node(std::size_t corner) const;
     /// Attributes at a point of the reference element. Valid until the next call, cut() or node().

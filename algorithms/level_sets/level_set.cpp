@@ -121,19 +121,18 @@ void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
     for (Transitions<Real>& t : transitions_) t.record.know_by_names(true);
 }
 
-/// Whether the options ask for vertices, triangles and perhaps normals alone.
+/// Whether the options ask for vertices, triangles and perhaps attributes and normals alone.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::draws_plainly() const {
-    return at_hand_.cuts.attribute_count() == 0 && !options_->cap && !options_->reference &&
-           !options_->at_nodes && options_->position_bounds == nullptr;
+    return !options_->cap && !options_->reference && options_->position_bounds == nullptr;
 }
 
 /// Whether patches can draw what the options ask for.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::suits_patches() const {
     const HierarchyFacts& facts = walk_->hierarchy().facts();
-    return facts.knows_patches && at_hand_.plainly &&
-           (!options_->normals || facts.gradients_at_nodes);
+    return facts.knows_patches && at_hand_.plainly && at_hand_.cuts.attribute_count() == 0 &&
+           !options_->at_nodes && (!options_->normals || facts.gradients_at_nodes);
 }
 
 /// Whether edges are cut on their finest pieces, which needs elements that stop to conform: else an
@@ -435,11 +434,15 @@ NESTGRID_INLINE void LevelSet<dimension, Real>::load(const View& view, bool draw
     if (options_->normals && draws && shown) normals_.add(at_hand_.cuts);
 }
 
-/// The contour of an element if it may be drawn plainly.
+/// The contour of the element if it may be drawn plainly. Vertices that lie at corners may not,
+/// where those at nodes are merged.
+/// \param boundary the faces to be capped
 template <int dimension, class Real>
-NESTGRID_INLINE const Contour* LevelSet<dimension, Real>::plain_contour(Shape shape,
-                                                                        unsigned inside) {
-    return at_hand_.plainly ? at_hand_.contour.table(shape).plain(inside) : nullptr;
+NESTGRID_INLINE const Contour* LevelSet<dimension, Real>::plain_contour(unsigned inside,
+                                                                        unsigned boundary) {
+    if (!at_hand_.plainly || boundary != 0) return nullptr;
+    if (options_->at_nodes && at_hand_.cuts.touches_level()) return nullptr;
+    return at_hand_.contour.table(at_hand_.cuts.view().shape).plain(inside);
 }
 
 /// The faces of an element on the boundary of the domain, one bit each, where the surface keeps its
@@ -463,7 +466,7 @@ NESTGRID_INLINE void LevelSet<dimension, Real>::draw(std::size_t level, unsigned
         if (surface.counts_only()) return surface.forget_element();
         return surface.builder().flush_if_full();
     }
-    if (const Contour* const plain = plain_contour(view.shape, inside)) {
+    if (const Contour* const plain = plain_contour(inside, boundary)) {
         if (surface.counts_only()) return tally_.add(contour.simplices_of(*plain));
         contour.draw_plainly(surface, *plain, inside);
         return end_element(surface);
@@ -489,7 +492,7 @@ void LevelSet<dimension, Real>::draw_beside_finer(std::size_t level, unsigned in
     auto& aside = at_hand_.aside;
     const bool by_names = transitions.record.by_names();
     const bool at_once = view.level == finest_level_;
-    const Contour* const plain = plain_contour(view.shape, inside);
+    const Contour* const plain = plain_contour(inside, boundary);
     aside.begin(inside, boundary, draws && !at_once);
     if (at_once && draws && plain != nullptr && !by_names) {
         at_hand_.contour.draw_plainly(surface, *plain, inside, &aside.vertices());

@@ -70,7 +70,7 @@ private:
                  bool draws);
     void draw(std::size_t level, unsigned inside, unsigned boundary);
     void draw_beside_finer(std::size_t level, unsigned inside, unsigned boundary, bool draws);
-    const Contour* plain_contour(Shape shape, unsigned inside);
+    const Contour* plain_contour(unsigned inside, unsigned boundary);
     unsigned boundary_of(const DrawnSurface<dimension>& surface, const View& view) const;
     void end_element(DrawnSurface<dimension>& surface);
     void find_hidden_faces();
@@ -99,7 +99,7 @@ private:
         double position_bound = 0;  // how far true positions may be from the mapped ones, below it
         bool loaded = false;
         bool loads_keys = false;
-        bool plainly = false;  // options ask for vertices and triangles alone
+        bool plainly = false;  // options ask for nothing but what draw_plainly() draws
 
         AtHand(const Walk<Real>& walk, std::size_t first_attribute, SimplexTally& tally,
                const IsosurfaceOptions& options)

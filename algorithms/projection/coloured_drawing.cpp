@@ -138,7 +138,7 @@ Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<
 Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
                           const Projection& projection, const ShadingOptions& options,
                           const Work& work) {
-    engine::check_first(prerolls, projection, "shadings", [&] {
+    engine::check_first(prerolls, projection, work, "shadings", [&] {
         engine::refuse_distance(projection);
         engine::refuse_slice_distance(projection);
         if (scale) engine::refuse_tolerance(projection);
@@ -165,7 +165,7 @@ Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
 Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
                        const Projection& projection, const IsosurfaceOptions& options,
                        const Work& work) {
-    engine::check_first(prerolls, projection, "slices", [&] {
+    engine::check_first(prerolls, projection, work, "slices", [&] {
         engine::refuse_distance(projection);
         if (options.cap) engine::refuse_slice_distance(projection);
     });
@@ -198,7 +198,7 @@ std::vector<Slice> detail::draw_slices(const Prerolls& prerolls, const SliceRequ
                                        const SurfaceTargets<3>& targets,
                                        const Projection& projection,
                                        const IsosurfaceOptions& options, const Work& work) {
-    engine::check_one_walk(prerolls, projection, "several slices");
+    engine::check_one_walk(prerolls, projection, work, "several slices");
     return engine::draw_once(
         prerolls, projection, request.isovalues, work, 3,
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
@@ -210,7 +210,7 @@ std::vector<Slice> detail::draw_slices(const Prerolls& prerolls, const SliceRequ
 std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const SliceRequest& request,
                                              const Projection& projection, std::uint64_t most,
                                              const IsosurfaceOptions& options, const Work& work) {
-    engine::check_one_walk(prerolls, projection, "several slices");
+    engine::check_one_walk(prerolls, projection, work, "several slices");
     try {
         return engine::draw_once(
             prerolls, projection, request.isovalues, work, 3,
@@ -226,7 +226,7 @@ std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const Sli
 std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const Projection& projection,
                                              std::uint64_t most, const ShadingOptions& options,
                                              const Work& work) {
-    engine::check_one_walk(prerolls, projection, "shadings");
+    engine::check_one_walk(prerolls, projection, work, "shadings");
     return engine::draw_once(
         prerolls, projection, {}, work, 2,
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {

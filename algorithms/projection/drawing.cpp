@@ -153,7 +153,7 @@ template <int dimension>
 Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double isovalue,
                                             const Projection& projection,
                                             const IsosurfaceOptions& options, const Work& work) {
-    engine::check_first(prerolls, projection, "isosurfaces",
+    engine::check_first(prerolls, projection, work, "isosurfaces",
                         [&] { check_isosurface(projection, options, dimension); });
     const auto within = [&](const VirtualRefinement& fine) {
         return engine::isosurface<dimension>(fine, isovalue, fine.criterion(), fine.bounds(),
@@ -201,7 +201,7 @@ std::vector<Isosurface<dimension>> detail::draw_isosurfaces(
     const Prerolls& prerolls, std::span<const double> isovalues,
     const SurfaceTargets<dimension>& targets, const Projection& projection,
     const IsosurfaceOptions& options, const Work& work) {
-    engine::check_one_walk(prerolls, projection, "several isosurfaces");
+    engine::check_one_walk(prerolls, projection, work, "several isosurfaces");
     return engine::draw_once(
         prerolls, projection, isovalues, work, dimension,
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
@@ -264,7 +264,7 @@ template <int dimension>
 Projected<Isosurface<dimension>> isoband(const Prerolls& prerolls, double low, double high,
                                          const Projection& projection,
                                          const IsosurfaceOptions& options, const Work& work) {
-    engine::check_first(prerolls, projection, "bands", [&] {
+    engine::check_first(prerolls, projection, work, "bands", [&] {
         engine::refuse_all_but_budgets(projection, "bands");
         engine::require_band(low, high, options);
     });
@@ -283,7 +283,7 @@ template Projected<Isosurface<3>> isoband<3>(const Prerolls&, double, double, co
 Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> values,
                              const Projection& projection, const IsosurfaceOptions& options,
                              const Work& work) {
-    engine::check_first(prerolls, projection, "isolines",
+    engine::check_first(prerolls, projection, work, "isolines",
                         [&] { engine::refuse_all_but_budgets(projection, "isolines"); });
     return draw_together<Isolines, 2>(
         prerolls, values, projection, options, work,
@@ -294,7 +294,7 @@ Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> v
 
 ProbeResult probe(const Prerolls& prerolls, std::span<const Point> points,
                   const Projection& projection, const Work& work) {
-    engine::check_first(prerolls, projection, "a probe", [&] {
+    engine::check_first(prerolls, projection, work, "a probe", [&] {
         engine::refuse_collapse(projection, "no surface");
         engine::refuse_budget(projection, "a probe, which draws none");
         engine::refuse_distance(projection);

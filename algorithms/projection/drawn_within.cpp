@@ -45,8 +45,9 @@ void refuse_all_but_budgets(const Projection& projection, const char* drawing) {
     refuse_tolerance(projection);
 }
 
-void check_one_walk(const Prerolls& prerolls, const Projection& projection, const char* drawing) {
-    check_first(prerolls, projection, drawing, [&] {
+void check_one_walk(const Prerolls& prerolls, const Projection& projection, const Work& work,
+                    const char* drawing) {
+    check_first(prerolls, projection, work, drawing, [&] {
         refuse_all_but_budgets(projection, drawing);
         refuse_budget(projection, drawing);
     });

@@ -29,15 +29,16 @@ void refuse_all_but_budgets(const Projection& projection, const char* drawing);
 /// alike.
 /// \param refuse throws for what this drawing does not do
 template <class Refuse>
-void check_first(const Prerolls& prerolls, const Projection& projection, const char* drawing,
-                 const Refuse& refuse) {
-    together(prerolls.field().facts().shared, drawing, [&] {
+void check_first(const Prerolls& prerolls, const Projection& projection, const Work& work,
+                 const char* drawing, const Refuse& refuse) {
+    together(work.on(prerolls.field()).facts().shared, drawing, [&] {
         projection.check();
         refuse();
     });
 }
 /// The same for drawings of one walk, which have neither a drawing of their own nor several.
-void check_one_walk(const Prerolls& prerolls, const Projection& projection, const char* drawing);
+void check_one_walk(const Prerolls& prerolls, const Projection& projection, const Work& work,
+                    const char* drawing);
 
 /// The projection with its threshold, where it draws everything by saying nothing.
 Projection told(Projection projection);
@@ -101,7 +102,7 @@ std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
                                               const CountWithin& count) {
     const auto data = polynomials_for(prerolls, projection, work);
     if (data == nullptr) return std::nullopt;
-    prerolls.field().facts().require_dimension(dimension);
+    work.on(prerolls.field()).facts().require_dimension(dimension);
     const TriangleBudget search =
         threshold_of(projection, work, [&] { return find_tolerance(*data, projection, count); });
     work.begin("drawing");
@@ -117,7 +118,7 @@ auto draw_once(const Prerolls& prerolls, const Projection& projection,
                std::span<const double> isovalues, const Work& work, int dimension,
                const Draw& draw) {
     const auto within = [&](const VirtualRefinement& fine) {
-        prerolls.field().facts().require_dimension(dimension);
+        work.on(prerolls.field()).facts().require_dimension(dimension);
         work.begin("drawing");
         return draw(fine, fine.criterion(), fine.bounds());
     };

@@ -7,6 +7,7 @@
 #include <nestgrid/algorithms/isosurface.h>
 #include <nestgrid/algorithms/options.h>
 #include <nestgrid/algorithms/probe.h>
+#include <nestgrid/algorithms/ranks.h>
 #include <nestgrid/algorithms/slice.h>
 #include <nestgrid/nestgrid.h>
 

@@ -6,6 +6,7 @@
 
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/frames.hpp>
+#include <nestgrid/algorithms/polynomial_values.hpp>
 #include <nestgrid/algorithms/round_up.hpp>
 
 #include "degree_world.hpp"
@@ -241,11 +242,18 @@ TEST(HighOrderFrames, AreClosedAndWithinTheirBoundsAtAnyTime) {
             const auto prerolls = frames.at(std::array{1 - t, t});
             const auto data = prerolls->high_order({});
             ASSERT_NE(data, nullptr);
+            const std::array<Point, 3> points{
+                {{0.3, -0.2, 0.7}, {-0.61, 0.4, 0.12}, {0.9, 0.8, -0.3}}};
+            const ProbeResult probed = probe(*data, points);
+            const AtMoment moment{&two, static_cast<double>(t)};
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                EXPECT_NEAR(probed.values[i], moment(points[i]), 1e-6);
+            }
             const auto result = isosurface<3>(
                 *prerolls, 0.1, {.threshold = 0.2, .indicator = "error"}, {.verify = true});
             expect_closed(result.surface);
             EXPECT_GT(result.surface.simplices.size(), 100U);
-            EXPECT_LE(measured(AtMoment{&two, static_cast<double>(t)}, result.surface, 0.1),
+            EXPECT_LE(measured(moment, result.surface, 0.1),
                       result.error_bound + std::ldexp(4.0, -20));
             EXPECT_LE(result.error_bound, (0.2 + data->jump()) * (1 + 1e-6));
         }

@@ -16,7 +16,7 @@ trap 'rm -rf "$work"' EXIT
 "$tools/make_meshes" "$work" 1
 "$tools/make_plotfiles" "$work"
 case $format in
-vthb | enzo | flash | chombo | athena)
+vthb | htg | enzo | flash | chombo | athena)
     /usr/bin/python3 -B "$(dirname "$0")/make_amr_files.py" "$work" 2>/dev/null ||
         { echo "skipped: there is no h5py or VTK" && exit 77; }
     ;;
@@ -52,6 +52,7 @@ plotfile)
     mutate small/Header small/Level_{0,1,2}/Cell_{H,D_00000,D_00001} -- "${isosurface[@]}" --array distance --value 0
     ;;
 vthb) mutate amr.vthb amr/*.vti -- "${blocks[@]}" ;;
+htg) mutate plane_trees.htg -- isolines IN --field dist --values 0 --threshold 5% --read-limit 2 -o OUT.vtp ;;
 enzo) mutate enzo/data0000.hierarchy enzo/data0000 enzo/data0000.cpu0000 -- "${blocks[@]}" ;;
 flash) mutate run_hdf5_plt_cnt_0000 -- "${blocks[@]}" ;;
 chombo) mutate chombo.hdf5 -- "${blocks[@]}" ;;

@@ -108,6 +108,45 @@ def write_vthb(path: str, dim: int, fields: Fields) -> None:
     assert writer.Write()
 
 
+def write_htg(path: str, dim: int, fields: Fields) -> None:
+    """The cells of level 0 are trees, those that a finer block covers are divided."""
+    blocks = blocks_of(dim)
+    by_block = [{b: values(b, f, blocks) for b in blocks} for f in fields.values()]
+    trees = vtk.vtkHyperTreeGrid()
+    trees.SetDimensions([2 * N + 1] * dim + [1] * (3 - dim))
+    trees.SetBranchFactor(2)
+    for d, put in enumerate((trees.SetXCoordinates, trees.SetYCoordinates, trees.SetZCoordinates)):
+        put(numpy_to_vtk(np.linspace(0, 1, 2 * N + 1) if d < dim else np.zeros(1), deep=True))
+    cursor = vtk.vtkHyperTreeGridNonOrientedCursor()
+    numbers: list[list[float]] = [[] for _ in fields]
+
+    def write(level: int, cell: Place) -> None:
+        cursor.SetGlobalIndexFromLocal(len(numbers[0]))
+        block = (level, tuple(a // N for a in cell))
+        for column, arrays in zip(numbers, by_block):
+            column.append(arrays[block][tuple(a % N for a in cell)])
+        if not is_divided(block, blocks):
+            return
+        cursor.SubdivideLeaf()
+        for c in range(2**dim):
+            cursor.ToChild(c)
+            write(level + 1, tuple(2 * a + (c >> d & 1) for d, a in enumerate(cell)))
+            cursor.ToParent()
+
+    for tree in range(trees.GetMaxNumberOfTrees()):
+        trees.InitializeNonOrientedCursor(cursor, tree, True)
+        write(0, tuple(tree // (2 * N) ** d % (2 * N) for d in range(dim)))
+    for name, column in zip(fields, numbers):
+        array = numpy_to_vtk(np.array(column), deep=True)
+        array.SetName(name)
+        trees.GetCellData().AddArray(array)
+    writer = vtk.vtkXMLHyperTreeGridWriter()
+    writer.SetDataModeToBinary()  # where it appends, it writes ranges over the first line
+    writer.SetFileName(path)
+    writer.SetInputDataObject(trees)
+    assert writer.Write()
+
+
 def write_flash(path: str, dim: int, fields: Fields, time: float = 0) -> None:
     blocks = blocks_of(dim)
     number = {block: i + 1 for i, block in enumerate(blocks)}  # from 1
@@ -299,6 +338,7 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     fields = {"dist": ball(0.45 + 0.1 * time), "plac": place}
     path = lambda name: os.path.join(folder, prefix + name)  # noqa: E731
     write_vthb(path("amr.vthb"), dim, fields)
+    write_htg(path("trees.htg"), dim, fields)
     write_flash(path("run_hdf5_plt_cnt_0000"), dim, fields, time)
     write_enzo(path("enzo"), dim, fields, time)
     write_chombo(path("chombo.hdf5"), dim, fields, time)

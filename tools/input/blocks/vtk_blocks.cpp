@@ -19,7 +19,6 @@
 namespace {
 
 using nestgrid::InvalidInput;
-namespace fs = std::filesystem;
 
 /// The numbers of a field where they are blanked, or of another type than wanted, are copied.
 template <class Array>
@@ -66,30 +65,12 @@ nestgrid::Blocks<3> boxes_in(vtkOverlappingAMR& amr) {
     return blocks_in_space(blocks);
 }
 
-/// The first error or warning of any reader of VTK.
-class Complaints : public vtkCommand {
-public:
-    static Complaints* New() { return new Complaints; }  // NOLINT(*-naming)
-    void Execute(vtkObject* caller, unsigned long event, void* data) override {
-        const std::string text = data == nullptr ? "" : static_cast<const char*>(data);
-        if (text.find("no tracer particles") != std::string::npos) return;  // need not be there
-        is_flat_ =
-            is_flat_ || text.find("Inconsistent types of vtkUniformGrid") != std::string::npos;
-        first_->Execute(caller, event, data);
-    }
-    /// Empty where there was none; without the place in VTK's source.
-    std::string first() const {
-        if (is_flat_) return "it lies in the plane, where VTK reads .vthb alone";
-        const std::size_t place = first_->message.find(", line ");
-        const std::size_t end =
-            place == std::string::npos ? place : first_->message.find(' ', place + 7);
-        return end == std::string::npos ? first_->message : first_->message.substr(end + 1);
-    }
-
-private:
-    vtkNew<ErrorCollector> first_;
-    bool is_flat_ = false;
-};
+/// Without the place in VTK's source.
+std::string without_place(const std::string& message) {
+    const std::size_t place = message.find(", line ");
+    const std::size_t end = place == std::string::npos ? place : message.find(' ', place + 7);
+    return end == std::string::npos ? message : message.substr(end + 1);
+}
 
 std::optional<double> time_in(vtkOverlappingAMR& amr) {
     if (amr.GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()) != 0) {
@@ -102,62 +83,51 @@ std::optional<double> time_in(vtkOverlappingAMR& amr) {
 
 }  // namespace
 
-vtkSmartPointer<vtkOverlappingAMR> read_quietly(
-    const std::function<vtkSmartPointer<vtkOverlappingAMR>()>& read) {
-    const vtkNew<Complaints> errors;
+vtkSmartPointer<vtkDataObject> read_quietly(
+    const std::function<vtkSmartPointer<vtkDataObject>()>& read) {
+    const vtkNew<ErrorCollector> errors;
     vtkOutputWindow* const window = vtkOutputWindow::GetInstance();
     vtkObject::GlobalWarningDisplayOn();  // what a child process prints is thrown away
     const unsigned long tags[]{window->AddObserver(vtkCommand::ErrorEvent, errors),
                                window->AddObserver(vtkCommand::WarningEvent, errors)};
-    vtkSmartPointer<vtkOverlappingAMR> amr = read();
+    vtkSmartPointer<vtkDataObject> data = read();
     for (const unsigned long tag : tags) window->RemoveObserver(tag);
-    if (!errors->first().empty()) throw InvalidInput("it cannot be read: " + errors->first());
-    if (amr == nullptr) throw InvalidInput("it holds no overlapping AMR");
-    return amr;
+    if (!errors->message.empty()) {
+        throw InvalidInput("it cannot be read: " + without_place(errors->message));
+    }
+    return data;
 }
 
-BlockFile blocks_of_vtk(vtkOverlappingAMR& amr, std::vector<BlockFile::Field> fields,
-                        bool is_double, const ReadAmr& read) {
+std::pair<std::vector<BlockFile::Field>, bool> fields_in(vtkCellData& cells) {
+    std::pair<std::vector<BlockFile::Field>, bool> found;
+    for (int i = 0; i < cells.GetNumberOfArrays(); ++i) {
+        vtkDataArray* const array = cells.GetArray(i);
+        if (array == nullptr || array->GetName() == nullptr) continue;
+        if (array->GetName() == std::string(vtkDataSetAttributes::GhostArrayName())) continue;
+        found.first.push_back({array->GetName(), array->GetNumberOfComponents()});
+        found.second = found.second || vtkFloatArray::SafeDownCast(array) == nullptr;
+    }
+    return found;
+}
+
+BlockFile blocks_of_vtk(const vtkSmartPointer<vtkOverlappingAMR>& amr,
+                        std::vector<BlockFile::Field> fields, bool is_double) {
     BlockFile file;
     file.is_double = is_double;
-    file.dimension = amr.GetGridDescription() == VTK_XY_PLANE ? 2 : 3;
-    file.time = time_in(amr);
-    file.blocks = file.dimension == 2 ? boxes_in<2>(amr) : boxes_in<3>(amr);
+    file.dimension = amr->GetGridDescription() == VTK_XY_PLANE ? 2 : 3;
+    file.time = time_in(*amr);
+    file.blocks = file.dimension == 2 ? boxes_in<2>(*amr) : boxes_in<3>(*amr);
     file.fields = std::move(fields);
     if (file.fields.empty()) throw InvalidInput("it has no data of cells");
-    file.numbers = [read, all = file.fields, is_double, is_flat = file.dimension == 2](
+    file.numbers = [amr, all = file.fields, is_double, is_flat = file.dimension == 2](
                        std::size_t field, int component) {
         const std::string& name = all.at(field).name;
-        const vtkSmartPointer<vtkOverlappingAMR> blocks = read(name);
         if (is_flat) {
-            return is_double ? numbers_in<2, vtkDoubleArray>(blocks, name, component)
-                             : numbers_in<2, vtkFloatArray>(blocks, name, component);
+            return is_double ? numbers_in<2, vtkDoubleArray>(amr, name, component)
+                             : numbers_in<2, vtkFloatArray>(amr, name, component);
         }
-        return is_double ? numbers_in<3, vtkDoubleArray>(blocks, name, component)
-                         : numbers_in<3, vtkFloatArray>(blocks, name, component);
+        return is_double ? numbers_in<3, vtkDoubleArray>(amr, name, component)
+                         : numbers_in<3, vtkFloatArray>(amr, name, component);
     };
     return file;
-}
-
-BlockFile blocks_of_vtk(vtkAMRBaseReader& reader, const fs::path& path) {
-    const vtkSmartPointer<vtkAMRBaseReader> kept(&reader);
-    const ReadAmr read = [kept, path](const std::string& field) {
-        return read_quietly([&] {
-            kept->SetEnableCaching(0);
-            kept->SetFileName(path.c_str());
-            for (int i = 0; i < kept->GetNumberOfCellArrays(); ++i) {
-                const char* const name = kept->GetCellArrayName(i);
-                kept->SetCellArrayStatus(name, field == name ? 1 : 0);
-            }
-            kept->SetMaxLevel(std::max(0, kept->GetNumberOfLevels() - 1));
-            kept->Update();
-            return vtkSmartPointer<vtkOverlappingAMR>(kept->GetOutput());
-        });
-    };
-    const vtkSmartPointer<vtkOverlappingAMR> amr = read("");
-    std::vector<BlockFile::Field> fields;
-    for (int i = 0; i < kept->GetNumberOfCellArrays(); ++i) {
-        fields.push_back({kept->GetCellArrayName(i)});
-    }
-    return blocks_of_vtk(*amr, std::move(fields), true, read);
 }

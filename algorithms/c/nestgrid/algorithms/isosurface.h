@@ -114,6 +114,29 @@ int nestgrid_measure(const nestgrid_grid* grid, const nestgrid_field* field,
 int nestgrid_details(const nestgrid_surface* surface, nestgrid_surface_details* out, char* message,
                      size_t message_size);
 
+/** A piece that was drawn with `ranks` as a part of the whole surface. Totals are the same on all
+ * ranks. The caller sets `size` to sizeof the struct, and no more of it is written. */
+typedef struct nestgrid_joined {
+    size_t size;
+    void* owner;
+    /* Per vertex of the piece: its number in the whole, and the rank that owns it, the least that
+     * has it. Vertices of one owner follow each other, owners in the order of ranks. */
+    const uint64_t* numbers;
+    const int* owners;
+    uint64_t vertices;   /* of the whole */
+    uint64_t simplices;  /* of the whole */
+    uint64_t components; /* connected parts of the whole */
+    uint64_t open;       /* edges of one triangle alone, but for those on the boundary */
+} nestgrid_joined;
+
+/** Numbers the vertices of the pieces of a surface. All ranks call it, while the surface, the
+ * self of `ranks` and the grid are as they were. Free the result with nestgrid_joined_free. */
+int nestgrid_join(const nestgrid_surface* piece, nestgrid_joined* out, char* message,
+                  size_t message_size);
+
+/** Frees what nestgrid_join has returned. */
+void nestgrid_joined_free(nestgrid_joined* joined);
+
 /** Frees what nestgrid_isosurface, nestgrid_slice and others have returned. */
 void nestgrid_surface_free(nestgrid_surface* surface);
 

@@ -6,6 +6,7 @@
 #ifndef NESTGRID_ALGORITHMS_OPTIONS_H
 #define NESTGRID_ALGORITHMS_OPTIONS_H
 
+#include <nestgrid/algorithms/ranks.h>
 #include <nestgrid/nestgrid.h>
 
 #ifdef __cplusplus
@@ -107,6 +108,10 @@ typedef struct nestgrid_options {
     /* Above 0, in units of the data: triangles of slices are split until their colours follow the
      * data within this. */
     double colour_tolerance;
+    /* The ranks of a grid that tells its `presence`: all call the same functions in the same order,
+     * with the same options, and each gets its piece (docs/distributed.md). With prerolls, what
+     * ranks share is kept, too: make other prerolls where the grid or its values have changed. */
+    const nestgrid_ranks* ranks;
 } nestgrid_options;
 
 /** Makes empty prerolls. Returns 0, or another number and a sentence, as isosurface.h says. Free

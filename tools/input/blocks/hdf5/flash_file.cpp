@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// HDF5 files of FLASH, whose blocks VTK reads; the time, which it does not tell, is read here.
-#include <vtkAMRFlashReader.h>
-#include <vtkNew.h>
+// HDF5 files of FLASH: blocks of one size, with those that finer ones replace, each with its level,
+// from 1, and its bounding box.
+#include <algorithm>
+#include <cmath>
 
-#include <array>
-
-#include "input/blocks/hdf5/hdf5_reading.hpp"
+#include "input/blocks/hdf5/block_forest.hpp"
 #include "input/blocks/read_blocks.hpp"
-#include "input/blocks/vtk_blocks.hpp"
 
 namespace {
 
+using nestgrid::InvalidInput;
 namespace fs = std::filesystem;
 
 /// Scalars are rows of a name and a value.
@@ -42,11 +41,71 @@ std::optional<double> time_of(const Hdf5& file) {
     return std::nullopt;
 }
 
+/// Low and high ends of all blocks, six numbers a block.
+std::vector<double> boxes_of(const Hdf5& file, std::size_t blocks) {
+    const Hdf5 data = file.at("bounding box");
+    const std::vector<hsize_t> shape = data.shape();
+    const bool fits =
+        shape.size() == 3 && shape[0] == blocks && shape[1] >= 1 && shape[1] <= 3 && shape[2] == 2;
+    if (!fits) throw InvalidInput("it has not one bounding box for each block");
+    std::vector<double> stored(blocks * shape[1] * 2);
+    data.read({0, 0, 0}, shape, true, stored.data());
+    std::vector<double> boxes(blocks * 6);
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+        boxes[i / (2 * shape[1]) * 6 + i % (2 * shape[1])] = stored[i];
+    }
+    return boxes;
+}
+
+/// Where the blocks of a level lie, from the bounding boxes.
+/// \throw InvalidInput where they have several sizes, or lie beside their places
+void place_blocks(const std::vector<double>& boxes, BlockForest& forest, std::size_t dim) {
+    const auto coarsest = static_cast<std::size_t>(
+        std::find(forest.levels.begin(), forest.levels.end(), 0) - forest.levels.begin());
+    if (coarsest == forest.levels.size()) throw InvalidInput("it has no blocks of level 1");
+    forest.places.assign(3 * forest.levels.size(), 0);
+    for (std::size_t d = 0; d < dim; ++d) {
+        double begin = boxes[2 * d];
+        for (std::size_t i = 0; i < forest.levels.size(); ++i) {
+            begin = std::min(begin, boxes[6 * i + 2 * d]);
+        }
+        const double length = boxes[6 * coarsest + 2 * d + 1] - boxes[6 * coarsest + 2 * d];
+        forest.origin[d] = begin;
+        forest.spacing[d] = length / forest.size[d];
+        for (std::size_t i = 0; i < forest.levels.size(); ++i) {
+            const double size = std::ldexp(length, -static_cast<int>(forest.levels[i]));
+            const double place = (boxes[6 * i + 2 * d] - begin) / size;
+            const double end = (boxes[6 * i + 2 * d + 1] - begin) / size;
+            const bool is_place = std::abs(place - std::round(place)) < 1e-2 && place < 0x1p30 &&
+                                  std::abs(end - std::round(place) - 1) < 1e-2;
+            if (!is_place) throw InvalidInput("a block does not lie at a place of its level");
+            forest.places[3 * i + d] = static_cast<std::int64_t>(std::round(place));
+        }
+    }
+}
+
 BlockFile open_flash(const fs::path& path) {
-    const std::optional<double> time = time_of(open_hdf5(path));
-    const vtkNew<vtkAMRFlashReader> reader;
-    BlockFile file = blocks_of_vtk(*reader, path);
-    file.time = time;
+    const auto opened = std::make_shared<const Hdf5>(open_hdf5(path));
+    std::vector<ForestField> fields;
+    for (const std::string& name : opened->at("unknown names").all_texts()) {
+        std::string padded = name;  // to four letters, as data sets are named
+        padded.resize(std::max<std::size_t>(4, name.size()), ' ');
+        fields.push_back({name, opened->has(padded) ? padded : name});
+    }
+    if (fields.empty()) throw InvalidInput("it has no variables");
+    const std::vector<hsize_t> shape = opened->at(fields.front().data_set).shape();
+    if (shape.size() != 4) throw InvalidInput("its fields do not have four directions");
+    BlockForest forest{.has_parents = true, .levels = opened->at("refine level").all_integers()};
+    for (std::size_t d = 0; d < 3; ++d) {
+        forest.size[d] = static_cast<int>(std::min<hsize_t>(shape[3 - d], 1 << 20));
+    }
+    for (std::int64_t& level : forest.levels) {
+        level -= 1;
+        if (level < 0 || level > 25) throw InvalidInput("a block has a level out of range");
+    }
+    place_blocks(boxes_of(*opened, forest.levels.size()), forest, forest.size[2] == 1 ? 2 : 3);
+    BlockFile file = forest_file(opened, std::move(forest), std::move(fields));
+    file.time = time_of(*opened);
     return file;
 }
 

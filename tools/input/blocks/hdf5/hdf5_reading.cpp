@@ -48,6 +48,33 @@ std::vector<Number> attribute_of(hid_t object, const std::string& name, hid_t nu
     return all;
 }
 
+/// The texts of an attribute or a data set.
+/// \param read(type, out) reads all of them, as they are in the file
+template <class Read>
+std::vector<std::string> texts_in(const Hdf5& type, const Hdf5& space, const std::string& what,
+                                  const Read& read) {
+    if (H5Tget_class(type.id()) != H5T_STRING) throw InvalidInput(what + " is no text");
+    std::vector<std::string> all(count_of(space));
+    if (H5Tis_variable_str(type.id()) > 0) {
+        std::vector<char*> pointers(all.size());
+        if (read(type.id(), pointers.data()) < 0) pointers.clear();
+        for (std::size_t i = 0; i < pointers.size(); ++i) {
+            if (pointers[i] != nullptr) all[i] = pointers[i];
+            H5free_memory(pointers[i]);
+        }
+        return all;
+    }
+    const std::size_t length = H5Tget_size(type.id());
+    std::vector<char> letters(length * all.size());
+    if (read(type.id(), letters.data()) < 0) letters.assign(letters.size(), 0);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::string padded(letters.data() + i * length, length);
+        all[i] = padded.substr(0, padded.find('\0'));
+        all[i].erase(all[i].find_last_not_of(' ') + 1);
+    }
+    return all;
+}
+
 }  // namespace
 
 Hdf5::Hdf5(hid_t id, const std::string& what) : id_{id} {
@@ -56,6 +83,22 @@ Hdf5::Hdf5(hid_t id, const std::string& what) : id_{id} {
 
 Hdf5 Hdf5::at(const std::string& name) const {
     return {H5Oopen(id_, name.c_str(), H5P_DEFAULT), "'" + name + "'"};
+}
+
+std::vector<std::string> Hdf5::data_sets() const {
+    std::vector<std::string> names;
+    const auto add = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
+        static_cast<std::vector<std::string>*>(all)->emplace_back(name);
+        return 0;
+    };
+    H5Literate(id_, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
+    std::erase_if(names, [&](const std::string& name) {
+        const hid_t object = H5Oopen(id_, name.c_str(), H5P_DEFAULT);
+        const bool is_data = object >= 0 && H5Iget_type(object) == H5I_DATASET;
+        if (object >= 0) H5Idec_ref(object);
+        return !is_data;
+    });
+    return names;
 }
 
 bool Hdf5::has(const std::string& name) const {
@@ -75,28 +118,17 @@ std::vector<double> Hdf5::numbers(const std::string& attribute) const {
 std::vector<std::string> Hdf5::texts(const std::string& name) const {
     const std::string what = "the attribute '" + name + "'";
     const Hdf5 attribute(H5Aopen(id_, name.c_str(), H5P_DEFAULT), what);
-    const Hdf5 type(H5Aget_type(attribute.id()), what);
-    const Hdf5 space(H5Aget_space(attribute.id()), what);
-    if (H5Tget_class(type.id()) != H5T_STRING) throw InvalidInput(what + " is no text");
-    std::vector<std::string> all(count_of(space));
-    if (H5Tis_variable_str(type.id()) > 0) {
-        std::vector<char*> pointers(all.size());
-        if (H5Aread(attribute.id(), type.id(), pointers.data()) < 0) pointers.clear();
-        for (std::size_t i = 0; i < pointers.size(); ++i) {
-            if (pointers[i] != nullptr) all[i] = pointers[i];
-            H5free_memory(pointers[i]);
-        }
-        return all;
-    }
-    const std::size_t length = H5Tget_size(type.id());
-    std::vector<char> letters(length * all.size());
-    if (H5Aread(attribute.id(), type.id(), letters.data()) < 0) letters.assign(letters.size(), 0);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const std::string padded(letters.data() + i * length, length);
-        all[i] = padded.substr(0, padded.find('\0'));
-        all[i].erase(all[i].find_last_not_of(' ') + 1);
-    }
-    return all;
+    return texts_in(Hdf5(H5Aget_type(attribute.id()), what),
+                    Hdf5(H5Aget_space(attribute.id()), what), what,
+                    [&](hid_t type, void* out) { return H5Aread(attribute.id(), type, out); });
+}
+
+std::vector<std::string> Hdf5::all_texts() const {
+    const std::string what = "a data set of texts";
+    return texts_in(Hdf5(H5Dget_type(id_), what), Hdf5(H5Dget_space(id_), what), what,
+                    [&](hid_t type, void* out) {
+                        return H5Dread(id_, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out);
+                    });
 }
 
 std::vector<hsize_t> Hdf5::shape() const {

@@ -28,6 +28,8 @@ public:
 
     /// A group or a data set in this file or group.
     Hdf5 at(const std::string& name) const;
+    /// The names of all data sets in it.
+    std::vector<std::string> data_sets() const;
     bool has(const std::string& name) const;
     bool has_attribute(const std::string& name) const;
 
@@ -46,6 +48,8 @@ public:
     bool is_double() const;  ///< not of floats
     /// All of its integers, those of compounds one behind the other.
     std::vector<std::int64_t> all_integers() const;
+    /// All of its texts, without blanks at their ends.
+    std::vector<std::string> all_texts() const;
     /// Its numbers from a place on, so many in each direction, to `out`: floats or doubles.
     void read(const std::vector<hsize_t>& from, const std::vector<hsize_t>& count, bool is_double,
               void* out) const;

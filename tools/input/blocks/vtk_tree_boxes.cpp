@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/blocks/vtk_tree_boxes.hpp"
+
+#include <cmath>
+
+#include <vtkBitArray.h>
+#include <vtkHyperTree.h>
+#include <vtkUnsignedCharArray.h>
+
+namespace {
+
+using nestgrid::InvalidInput;
+using Place = std::array<int, 3>;
+
+bool is_hidden(vtkHyperTreeGrid& grid, vtkIdType index) {
+    vtkUnsignedCharArray* const ghosts = grid.GetGhostCells();
+    return (grid.HasMask() && grid.GetMask()->GetValue(index) != 0) ||
+           (ghosts != nullptr && ghosts->GetValue(index) != 0);
+}
+
+/// The boxes below one tree.
+class BoxesOfTree {
+public:
+    BoxesOfTree(TreeBoxes& out, vtkHyperTree& tree) : out_{&out}, tree_{&tree} {}
+
+    struct Cell {
+        vtkIdType vertex = 0;
+        bool is_hidden = false;
+    };
+    vtkIdType number(const Cell& cell) const {
+        return cell.is_hidden ? -1 : tree_->GetGlobalIndexFromLocal(cell.vertex);
+    }
+    Cell cell(vtkIdType vertex, bool hidden) const {
+        return {vertex, hidden || ::is_hidden(*out_->grid, tree_->GetGlobalIndexFromLocal(vertex))};
+    }
+    /// Adds boxes as long as all cells of one are divided, then goes on in each part.
+    void add_below(const Cell& top, std::size_t level, Place place) {
+        if (tree_->IsLeaf(top.vertex)) return;
+        std::vector<Cell> cells{top};
+        int side = 1;
+        const auto is_leaf = [&](const Cell& each) { return tree_->IsLeaf(each.vertex); };
+        while (std::none_of(cells.begin(), cells.end(), is_leaf)) {
+            cells = divided(cells, side);
+            side *= 2;
+            for (int& x : place) x *= 2;
+            add_box(cells, ++level, place, side);
+        }
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            Place at = place;
+            int rest = static_cast<int>(i);
+            for (int d = 0; d < out_->dimension; ++d, rest /= side) {
+                at[static_cast<std::size_t>(d)] += rest % side;
+            }
+            add_below(cells[i], level, at);
+        }
+    }
+
+private:
+    std::vector<Cell> divided(const std::vector<Cell>& cells, int side) const {
+        const bool is_flat = out_->dimension == 2;
+        std::vector<Cell> result(cells.size() * (is_flat ? 4 : 8));
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const int n = static_cast<int>(i);
+            const Place at{2 * (n % side), 2 * (n / side % side), 2 * (n / side / side)};
+            const vtkIdType first =
+                tree_->GetElderChildIndex(static_cast<unsigned>(cells[i].vertex));
+            for (int c = 0; c < (is_flat ? 4 : 8); ++c) {
+                const int to = ((at[2] + (c >> 2)) * 2 * side + at[1] + (c >> 1 & 1)) * 2 * side +
+                               at[0] + (c & 1);
+                result[static_cast<std::size_t>(to)] = cell(first + c, cells[i].is_hidden);
+            }
+        }
+        return result;
+    }
+    void add_box(const std::vector<Cell>& cells, std::size_t level, const Place& low, int side) {
+        if (level == out_->blocks.levels.size()) {
+            out_->blocks.levels.emplace_back().ratio = {2, 2, out_->dimension == 2 ? 1 : 2};
+            out_->cells.emplace_back();
+        }
+        Place high = low;
+        for (int d = 0; d < out_->dimension; ++d) high[static_cast<std::size_t>(d)] += side - 1;
+        out_->blocks.levels[level].boxes.push_back({low, high});
+        auto& numbers = out_->cells[level].emplace_back();
+        for (const Cell& each : cells) numbers.push_back(number(each));
+    }
+
+    TreeBoxes* out_;
+    vtkHyperTree* tree_;
+};
+
+/// \throw InvalidInput where trees have several sizes
+void place_trees(TreeBoxes& out) {
+    vtkDataArray* const along[]{out.grid->GetXCoordinates(), out.grid->GetYCoordinates(),
+                                out.grid->GetZCoordinates()};
+    for (std::size_t d = 0; d < static_cast<std::size_t>(out.dimension); ++d) {
+        const vtkIdType trees = along[d]->GetNumberOfValues() - 1;
+        const double begin = along[d]->GetTuple1(0);
+        const double step = (along[d]->GetTuple1(trees) - begin) / static_cast<double>(trees);
+        for (vtkIdType i = 0; i <= trees; ++i) {
+            const double off = along[d]->GetTuple1(i) - begin - static_cast<double>(i) * step;
+            if (std::abs(off) <= 1e-3 * std::abs(step)) continue;
+            throw InvalidInput("its trees have several sizes in direction " + std::to_string(d) +
+                               ": trees of one size are read");
+        }
+        out.blocks.origin[d] = begin;
+        out.blocks.spacing[d] = step;
+    }
+}
+
+}  // namespace
+
+TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid) {
+    const unsigned* const points = grid->GetDimensions();
+    TreeBoxes out{grid, points[2] == 1 ? 2 : 3, {}, {}};
+    if (grid->GetBranchFactor() != 2 || points[0] < 2 || points[1] < 2) {
+        throw InvalidInput("its trees are divided by " + std::to_string(grid->GetBranchFactor()) +
+                           " in dimension " + std::to_string(grid->GetDimension()) +
+                           ": trees by two are read, in space or in a plane of constant z");
+    }
+    place_trees(out);
+    const vtkIdType cells = grid->GetGlobalNodeIndexMax() + 1;
+    const vtkUnsignedCharArray* const ghosts = grid->GetGhostCells();
+    if ((grid->HasMask() && grid->GetMask()->GetNumberOfValues() < cells) ||
+        (ghosts != nullptr && ghosts->GetNumberOfValues() < cells)) {
+        throw InvalidInput("its mask or its ghost array has fewer entries than cells");
+    }
+    const int deep = out.dimension == 2 ? 1 : static_cast<int>(points[2]) - 1;
+    const Place last{static_cast<int>(points[0]) - 2, static_cast<int>(points[1]) - 2, deep - 1};
+    out.blocks.levels.push_back({{{{0, 0, 0}, last}}, {}});
+    const auto trees = static_cast<std::size_t>(grid->GetMaxNumberOfTrees());
+    out.cells.push_back({std::vector<vtkIdType>(trees, -1)});
+    for (vtkIdType t = 0; t < grid->GetMaxNumberOfTrees(); ++t) {
+        vtkHyperTree* const tree = grid->GetTree(t);
+        if (tree == nullptr) continue;
+        std::array<unsigned, 3> at{};
+        grid->GetLevelZeroCoordinatesFromIndex(t, at[0], at[1], at[2]);
+        const Place place{static_cast<int>(at[0]), static_cast<int>(at[1]),
+                          static_cast<int>(at[2])};
+        BoxesOfTree boxes(out, *tree);
+        const BoxesOfTree::Cell root = boxes.cell(0, false);
+        const int number = (place[2] * (last[1] + 1) + place[1]) * (last[0] + 1) + place[0];
+        out.cells[0][0][static_cast<std::size_t>(number)] = boxes.number(root);
+        boxes.add_below(root, 0, place);
+    }
+    return out;
+}

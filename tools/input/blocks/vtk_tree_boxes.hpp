@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Hyper tree grids of VTK as boxes of cells. Their trees are the cells of level 0, and parts of a
+// tree that are divided everywhere alike are boxes of finer levels.
+#pragma once
+
+#include <vtkHyperTreeGrid.h>
+#include <vtkSmartPointer.h>
+
+#include "input/blocks/block_file.hpp"
+
+/// A grid, its boxes, and for each cell of them its number in the arrays of the grid, -1 where it
+/// is hidden or has no tree.
+struct TreeBoxes {
+    vtkSmartPointer<vtkHyperTreeGrid> grid;
+    int dimension;
+    nestgrid::Blocks<3> blocks;
+    std::vector<std::vector<std::vector<vtkIdType>>> cells;  // by level and box, x fastest
+};
+
+/// \throw nestgrid::InvalidInput for trees of several sizes, by threes, or in another plane than
+/// one of constant z
+TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid);

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Hyper tree grids of VTK (.htg), which VTK reads in child processes.
+#include <limits>
+#include <tuple>
+
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkXMLHyperTreeGridReader.h>
+
+#include "input/blocks/read_blocks.hpp"
+#include "input/blocks/vtk_blocks.hpp"
+#include "input/blocks/vtk_tree_boxes.hpp"
+#include "input/end_checks.hpp"
+
+namespace {
+
+using nestgrid::InvalidInput;
+namespace fs = std::filesystem;
+
+template <class Real>
+BoxNumbers numbers_of(const TreeBoxes& trees, vtkDataArray& data, int component) {
+    const auto values = std::make_shared<std::vector<std::vector<Real>>>();
+    BoxNumbers numbers;
+    for (std::size_t l = 0; l < trees.cells.size(); ++l) {
+        auto& arrays = numbers.arrays.emplace_back();
+        for (std::size_t b = 0; b < trees.cells[l].size(); ++b) {
+            auto& own = values->emplace_back();
+            for (const vtkIdType i : trees.cells[l][b]) {
+                own.push_back(i < 0 ? std::numeric_limits<Real>::quiet_NaN()
+                                    : static_cast<Real>(data.GetComponent(i, component)));
+            }
+            auto& array = arrays.emplace_back();
+            array.first = own.data();
+            std::ptrdiff_t stride = sizeof(Real);
+            const auto& box = trees.blocks.levels[l].boxes[b];
+            for (std::size_t d = 0; d < 3; ++d) {
+                array.stride[d] = stride;
+                stride *= box.upper[d] - box.lower[d] + 1;
+            }
+        }
+    }
+    numbers.memory = values;
+    return numbers;
+}
+
+BlockFile open_htg(const fs::path& path) {
+    check_xml_end(path);
+    const auto grid = read_quietly<vtkHyperTreeGrid>([&] {
+        const vtkNew<vtkXMLHyperTreeGridReader> reader;
+        if (reader->CanReadFile(path.c_str()) == 0) {
+            throw InvalidInput("it is no file of VTK's hyper tree grids");
+        }
+        reader->SetFileName(path.c_str());
+        reader->Update();
+        return vtkSmartPointer<vtkDataObject>(reader->GetOutputDataObject(0));
+    });
+    const auto trees = std::make_shared<const TreeBoxes>(tree_boxes(grid));
+    BlockFile file;
+    file.dimension = trees->dimension;
+    file.blocks = trees->blocks;
+    std::tie(file.fields, file.is_double) = fields_in(*grid->GetCellData());
+    if (file.fields.empty()) throw InvalidInput("it has no data of cells");
+    file.numbers = [trees, file_fields = file.fields, is_double = file.is_double](std::size_t field,
+                                                                                  int component) {
+        vtkDataArray* const data =
+            trees->grid->GetCellData()->GetArray(file_fields.at(field).name.c_str());
+        if (data->GetNumberOfTuples() <= trees->grid->GetGlobalNodeIndexMax()) {
+            throw InvalidInput("the field '" + file_fields.at(field).name +
+                               "' has fewer numbers than the trees have cells");
+        }
+        return is_double ? numbers_of<double>(*trees, *data, component)
+                         : numbers_of<float>(*trees, *data, component);
+    };
+    return file;
+}
+
+const RegisteredFormat htg({.name = "VTK hyper tree grid",
+                            .endings = {".htg"},
+                            .holds = "trees of cells, several fields",
+                            .options = {"--array", "--cells", "--component", "--read-limit"},
+                            .read_field = read_blocks<open_htg>,
+                            .describe = describe_blocks<open_htg>});
+
+}  // namespace
