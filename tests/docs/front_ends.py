@@ -84,7 +84,7 @@ TABLE = {
 OTHERS = {
     "page": {"axis", "at", "finest", "coarsest", "slope", "motion"},
     "Python": {"level", "self"},
-    "C, Fortran": {"size", "attributes", "attribute_count", "progress_data", "prerolls"},
+    "C, Fortran": {"size", "attributes", "attribute_count", "progress_data", "prerolls", "ranks"},
     "VTK": {"SetGrid", "SetOrigin", "SetNormal", "SetIsovalue", "SetScale", "SetValues", "SetLow", "SetHigh",
             "SetProjection"},
 }
