@@ -121,10 +121,11 @@ void LevelSet<dimension, Real>::count_only(std::uint64_t most) {
     for (Transitions<Real>& t : transitions_) t.record.know_by_names(true);
 }
 
-/// Whether the options ask for vertices, triangles and perhaps attributes and normals alone.
+/// Whether the options ask for vertices, triangles and perhaps attributes, normals and bounds
+/// alone.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::draws_plainly() const {
-    return !options_->cap && !options_->reference && options_->position_bounds == nullptr;
+    return !options_->cap && !options_->reference;
 }
 
 /// Whether patches can draw what the options ask for.
@@ -132,7 +133,8 @@ template <int dimension, class Real>
 bool LevelSet<dimension, Real>::suits_patches() const {
     const HierarchyFacts& facts = walk_->hierarchy().facts();
     return facts.knows_patches && at_hand_.plainly && at_hand_.cuts.attribute_count() == 0 &&
-           !options_->at_nodes && (!options_->normals || facts.gradients_at_nodes);
+           !options_->at_nodes && options_->position_bounds == nullptr &&
+           (!options_->normals || facts.gradients_at_nodes);
 }
 
 /// Whether edges are cut on their finest pieces, which needs elements that stop to conform: else an
