@@ -4,23 +4,21 @@
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
-import sys
 import warnings
-from dataclasses import dataclass
-from typing import IO, Any, Sequence, Union
+from typing import Any, Sequence, Union
 
 import numpy as np
 
 from . import _nestgrid
 from ._arguments import SampleType, flag, numbers, optional, sample_type, sequence, suggestion
 from ._arguments import path as path_kind
-from ._arguments import takes, text, whole
-from ._blocks import Blocks
-from ._cells import Cells
+from ._arguments import name_of, takes, text, whole
+from ._ask import ask
+from ._blocks import Rule
+from ._choice import Choice, chosen
 from ._fields import Field
+from ._load_cells import load_boxes, load_mesh
 from ._nestgrid import InvalidInput, IoError
 from ._sources import Frames, Volume
 
@@ -43,6 +41,7 @@ BOXES = (".vthb", ".hierarchy", ".athdf")
     type=optional(sample_type),
     big_endian=flag,
     spacing=optional(numbers),
+    rule=optional(name_of(Rule)),
 )
 def load(
     path: str | os.PathLike[str],
@@ -55,6 +54,7 @@ def load(
     type: SampleType | None = None,
     big_endian: bool = False,
     spacing: Numbers | None = None,
+    rule: Rule | None = None,
 ) -> Field | Frames:
     """The field of a file: a Volume, a hierarchy's, Cells, Blocks, or Frames of several.
 
@@ -64,8 +64,8 @@ def load(
                 picture; or a plotfile of AMReX, a folder with the file Header, which must stay as
                 it is; or other boxes of cells (Blocks): .vthb, Enzo's .hierarchy, .athdf of
                 Athena++, or HDF5 of Chombo or FLASH, of any name. What has one sample along an
-                axis is a plane: Volume.array[i, j]. Reading .vtu, .vti, .vthb, .nii, pictures,
-                Enzo and FLASH needs VTK's Python package, HDF5 h5py, DICOM pydicom
+                axis is a plane: Volume.array[i, j]. Reading .vtu, .vti, .vthb, .nii and pictures
+                needs VTK's Python package, HDF5 and Enzo h5py, DICOM pydicom
     array       the name of the field, for .nestgrid, boxes, .vtu and .vti, or of the series of
                 DICOM; "": the only one, or the active one, or that of the slice
     frame       which of several volumes in a file, from 0; None: the first, with a warning that
@@ -76,6 +76,8 @@ def load(
     type        for .raw alone: of the samples, "uint8" to "float64"
     big_endian  for .raw alone: whether the highest byte of a sample comes first
     spacing     for .raw alone: distance of samples along x, y and z, in units of length; None: 1
+    rule        for boxes other than plotfiles: of the values at nodes, as Blocks() has it; None:
+                "smooth"
 
     Raises IoError where the file cannot be read or is damaged, InvalidInput where there is no such
     field or an argument does not fit the format.
@@ -95,6 +97,8 @@ def load(
     named = dicom or plotfile or boxes or suffix in (".nestgrid", ".vti", ".vtu")
     if array and not named:
         raise InvalidInput(f"load(): '{path}' has one array, which has no name: leave out array")
+    if rule is not None and (plotfile or not boxes):
+        raise InvalidInput(f"load(): rule is for boxes of cells other than plotfiles, not '{path}'")
     choice = Choice(frame, component, magnitude)
     if (plotfile or suffix in (".nestgrid", ".raw")) and choice != Choice():
         raise InvalidInput(
@@ -109,24 +113,15 @@ def load(
         return _read_apart("_read_dicom.py", str(path), array, choice)
     _require_file(str(path))
     if boxes:
-        return _boxes(str(path), array, choice)
+        return load_boxes(str(path), array, choice, rule or "smooth")
     if suffix == ".vtu":
-        return _mesh(str(path), array, choice)
+        return load_mesh(str(path), array, choice)
     if suffix == ".raw":
         return _raw(str(path), dims, type, big_endian, spacing)
     if suffix in (".vti", ".nii", ".nii.gz", *PICTURES):
         return _read_apart("_read_vtk.py", str(path), array, choice)
     place: dict[str, Any] = dict(_nestgrid.volume_file(str(path), suffix in (".mhd", ".mha")))
-    return _volume(str(path), _chosen(str(path), choice, **_split(place)), **place)
-
-
-@dataclass(frozen=True)
-class Choice:
-    """Which numbers of a file with several for each place are wanted."""
-
-    frame: int | None = None
-    component: int | None = None
-    magnitude: bool = False
+    return _volume(str(path), chosen(str(path), choice, **_split(place)), **place)
 
 
 def _plotfile(path: str) -> str:
@@ -158,53 +153,6 @@ def _is_dicom(path: str) -> bool:
 def _split(place: dict[str, Any]) -> dict[str, Any]:
     """Takes the numbers and what they mean away from where they are."""
     return {each: place.pop(each) for each in ("numbers", "slope", "intercept")}
-
-
-def _numbered(path: str, what: str, number: int, count: int) -> int:
-    if number < count:
-        return number
-    raise InvalidInput(f"{path} has no {what} {number}: {what} is from 0 to {count - 1}")
-
-
-def _chosen(
-    path: str, choice: Choice, numbers: np.ndarray, slope: float, intercept: float
-) -> np.ndarray:
-    """The values of one frame.
-
-    numbers: one index for the component, three for the place, one for the frame
-    """
-    components, frames = numbers.shape[0], numbers.shape[4]
-    if choice.component is not None and choice.magnitude:
-        raise InvalidInput("load(): component and magnitude exclude each other")
-    if frames == 1 and choice.frame is not None:
-        raise InvalidInput(f"load(): frame chooses nothing: {path} has one frame only")
-    if components == 1 and (choice.component is not None or choice.magnitude):
-        given = "magnitude" if choice.magnitude else "component"
-        raise InvalidInput(f"load(): {given} chooses nothing: {path} has one number per sample")
-    if components > 1 and choice.component is None and not choice.magnitude:
-        raise InvalidInput(
-            f"{path} has {components} numbers per sample, not one: choose by component, "
-            f"from 0 to {components - 1}, or by magnitude=True"
-        )
-    if frames > 1 and choice.frame is None:
-        warnings.warn(
-            f"frame 0 of the {frames} in {os.path.basename(path)} is read; frame= chooses "
-            f"another, from 0 to {frames - 1}",
-            stacklevel=4,
-        )
-    values = numbers[..., _numbered(path, "frame", choice.frame or 0, frames)]
-    if choice.component is not None:
-        part = _numbered(path, "component", choice.component, components)
-        values = values[part : part + 1]
-    if slope != 1 or intercept != 0 or choice.magnitude:
-        # Of a type that keeps the digits, as the program's.
-        small = numbers.dtype.itemsize <= 2 and abs(intercept) <= 8e6 * abs(slope)
-        result = np.float32 if small or numbers.dtype == np.float32 else np.float64
-        values = values * np.float64(slope) + np.float64(intercept)
-        if choice.magnitude:
-            values = np.linalg.norm(values, axis=0, keepdims=True)
-        values = values.astype(result)
-    return np.asfortranarray(values[0])
 
 
 class LoadedField(Field):
@@ -339,72 +287,8 @@ def _raw(
     return _volume(path, array, step, np.zeros(3), np.eye(3), "", "")
 
 
-def _read_into(stream: IO[bytes], part: memoryview) -> int:
-    """Fills as much of the memory as there is to read, and returns how much."""
-    data = stream.read(len(part))
-    part[: len(data)] = data
-    return len(data)
-
-
-def _mesh(path: str, array: str, choice: Choice) -> Cells:
-    if choice.frame is not None or choice.magnitude:
-        given = "magnitude" if choice.magnitude else "frame"
-        raise InvalidInput(f"load(): {given} chooses nothing of a .vtu: one of component alone")
-    place, data = _ask("_read_cells.py", path, array)
-    parts, begin = {}, 0
-    for name, kind, shape in place["arrays"]:
-        size = int(np.prod(shape)) * np.dtype(kind).itemsize
-        parts[name] = data[begin : begin + size].view(kind).reshape(shape)
-        begin += size
-    values = parts["values"]
-    if values.ndim == 1:
-        values = values[:, None]
-    values = _chosen(path, choice, values.T[:, :, None, None, None], 1, 0)[:, 0, 0]
-    degrees = parts["degrees"] if parts["degrees"].size else None
-    places, types = parts["points"], parts["types"]
-    offsets, connectivity = parts["offsets"], parts["connectivity"]
-    try:
-        return Cells(
-            places, types, offsets, connectivity, values, degrees=degrees, name=place["name"]
-        )
-    except InvalidInput as error:
-        raise InvalidInput(f"{path}: {error}") from None
-
-
-def _boxes(path: str, array: str, choice: Choice) -> Blocks:
-    if choice.frame is not None or choice.magnitude:
-        given = "magnitude" if choice.magnitude else "frame"
-        raise InvalidInput(f"load(): {given} chooses nothing of boxes: one of component alone")
-    place, data = _ask("_read_amr.py", path, array)
-    components, kind = place["components"], np.dtype(place["kind"])
-    if components == 1 and choice.component is not None:
-        raise InvalidInput(f"load(): component chooses nothing: {path} has one number per cell")
-    if components > 1 and choice.component is None:
-        raise InvalidInput(
-            f"{path} has {components} numbers per cell, not one: choose by component, from 0 to "
-            f"{components - 1}"
-        )
-    part = _numbered(path, "component", choice.component or 0, components)
-    boxes, begin = [], 0
-    for level, lower, shape in place["boxes"]:
-        count = components * int(np.prod(shape))
-        numbers = data[begin : begin + count * kind.itemsize].view(kind)
-        begin += count * kind.itemsize
-        boxes.append((level, lower, numbers.reshape((*shape, components), order="F")[..., part]))
-    try:
-        return Blocks(
-            boxes,
-            ratio=place["ratio"],
-            spacing=place["spacing"],
-            origin=place["origin"],
-            name=place["name"],
-        )
-    except InvalidInput as error:
-        raise InvalidInput(f"{path}: {str(error).removeprefix('Blocks(): ')}") from None
-
-
 def _read_apart(reader_program: str, path: str, array: str, choice: Choice) -> Volume:
-    place, samples = _ask(reader_program, path, array)
+    place, samples = ask(reader_program, path, array)
     # The components of a frame are side by side, those of the next one behind them.
     numbers = samples.T
     numbers = numbers.reshape((-1, place.pop("frames", 1), *numbers.shape[1:]), order="F")
@@ -412,37 +296,4 @@ def _read_apart(reader_program: str, path: str, array: str, choice: Choice) -> V
     slope, intercept = place.pop("slope", 1), place.pop("intercept", 0)
     if note := place.pop("note", ""):
         warnings.warn(note, stacklevel=3)
-    return _volume(path, _chosen(path, choice, numbers, slope, intercept), **place)
-
-
-def _ask(reader_program: str, path: str, array: str) -> tuple[dict[str, Any], np.ndarray]:
-    """Reads in another process: damaged files may crash libraries, and Ctrl-C ends it at once."""
-    program = os.path.join(os.path.dirname(__file__), reader_program)
-    command = [sys.executable or "python3", program, os.path.abspath(path), array]
-    with subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-    ) as reader:
-        try:
-            assert reader.stdout is not None
-            answer = reader.stdout.readline()
-            place = json.loads(answer) if answer else {}
-            samples = np.empty(0)
-            if "shape" in place:
-                samples = np.empty(place.pop("shape")[::-1], place.pop("type"))
-                rest = samples.reshape(-1).view(np.uint8).data
-                while rest and (count := _read_into(reader.stdout, rest[: 1 << 24])):
-                    rest = rest[count:]
-                place = {} if rest else place
-        except BaseException:
-            reader.kill()
-            raise
-    if "error" in place:
-        sentence = place["error"].replace(os.path.abspath(path), path)
-        near = suggestion(array, place.get("names", ())) if array else ""
-        if near or (array and place.get("names")):
-            listed = ", ".join(f"'{each}'" for each in place["names"])
-            sentence += f", only {listed}{near}"
-        raise (InvalidInput if place.get("argument") else IoError)(sentence)
-    if not place:
-        raise IoError(f"{path} cannot be read: its reader ended with {reader.returncode}")
-    return place, samples
+    return _volume(path, chosen(path, choice, numbers, slope, intercept), **place)

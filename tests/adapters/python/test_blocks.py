@@ -158,6 +158,8 @@ def test_plotfiles(tmp_path):
         nestgrid.load(folder, frame=1)
     with pytest.raises(nestgrid.InvalidInput, match="dims is for .raw files"):
         nestgrid.load(folder, dims=(1, 2, 3))
+    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes of cells other than plotfiles"):
+        nestgrid.load(folder, rule="means")
     data = folder / "Level_2" / "Cell_D_00000"
     data.write_bytes(data.read_bytes()[:-1])
     with pytest.raises(nestgrid.IoError, match="is truncated"):
@@ -171,7 +173,7 @@ TOOLS = os.path.join(os.path.dirname(__file__), "..", "..", "tools")
 def amr_files(tmp_path_factory):
     """One grid of blocks in each format, as make_amr_files.py writes it, and its folder."""
     pytest.importorskip("h5py")
-    pytest.importorskip("vtkmodules.vtkIOAMR")
+    pytest.importorskip("vtkmodules.vtkIOXML")
     folder = tmp_path_factory.mktemp("amr")
     sys.path.insert(0, TOOLS)
     try:
@@ -202,7 +204,18 @@ def test_formats_of_codes_have_one_surface(amr_files):
         np.testing.assert_allclose(place.probe(points), points[:, 0], atol=1e-12, err_msg=name)
 
 
-@pytest.mark.parametrize("name", ["amr.vthb", "chombo.hdf5", "athena.athdf"])
+def test_rules_of_formats_of_codes(amr_files):
+    areas = {
+        rule: [nestgrid.load(amr_files / name, "dist", rule=rule).isosurface(0).report()["area"] for name in FORMATS[3:]]
+        for rule in ("smooth", "centres", "means")
+    }
+    assert all(np.ptp(each) < 1e-12 for each in areas.values())
+    assert len({round(each[0], 9) for each in areas.values()}) == 3
+    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes of cells .*'a.nii'"):
+        nestgrid.load("a.nii", rule="means")
+
+
+@pytest.mark.parametrize("name", FORMATS)
 def test_formats_of_codes_in_the_plane(amr_files, name):
     field = nestgrid.load(amr_files / f"plane_{name}", "plac")
     points = np.random.default_rng(1).uniform(0, 1, (50, 2))
@@ -222,10 +235,6 @@ def test_refusals_of_formats_of_codes(amr_files):
     np.testing.assert_allclose(second.range, [0, 1], atol=1e-12)
     with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
         load(amr_files / "chombo.hdf5", "dist", component=0)
-    for name in ("run_hdf5_plt_cnt_0000", "enzo/data0000.hierarchy"):
-        path = str(amr_files / f"plane_{name}")
-        with pytest.raises(nestgrid.IoError, match="in the plane, where VTK reads .vthb alone"):
-            load(path, "dist")
     (amr_files / "cut.athdf").write_bytes((amr_files / "athena.athdf").read_bytes()[:-9000])
     with pytest.raises(nestgrid.IoError, match="cut.athdf cannot be read"):
         load(amr_files / "cut.athdf", "dist")

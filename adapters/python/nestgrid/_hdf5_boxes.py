@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Boxes of cells in HDF5 files of Chombo, Athena++, FLASH and Enzo, for load()'s reader, a program of its own."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+from _answer import Refused, listed
+
+Boxes = list[tuple[int, list[int], np.ndarray]]
+
+
+def chosen(path: str, name: str, names: list[str]) -> str:
+    if not names:
+        raise Refused(f"{path} has no data of cells")
+    if not name and len(names) > 1:
+        raise Refused(
+            f"{path} has several fields, choose one by array: {listed(names)}", True, names
+        )
+    if name and name not in names:
+        raise Refused(f"{path} has no field '{name}'", True, names)
+    return name or names[0]
+
+
+def read_chombo(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
+    """Each level has the numbers of its boxes, box by box, field by field, with ghost cells."""
+    dim = int(file["Chombo_global"].attrs["SpaceDim"])
+    fields = int(file.attrs["num_components"])
+    names = [file.attrs[f"component_{i}"].decode() for i in range(fields)]
+    wanted = chosen(path, name, names)
+    number = names.index(wanted)
+    levels = [file[f"level_{i}"] for i in range(int(file.attrs["num_levels"]))]
+    boxes: Boxes = []
+    for number_of_level, level in enumerate(levels):
+        ghosts = [0] * dim
+        if "outputGhost" in level.get("data_attributes", level).attrs:
+            ghosts = list(level["data_attributes"].attrs["outputGhost"].tolist())
+        data, begin = level["data:datatype=0"], 0
+        for box in level["boxes"][()].tolist():
+            shape = [h - l + 1 + 2 * g for l, h, g in zip(box[:dim], box[dim:], ghosts)]
+            cells = int(np.prod(shape))
+            numbers = data[begin + number * cells : begin + (number + 1) * cells]
+            begin += fields * cells
+            inside = tuple(slice(g, n - g) for g, n in zip(ghosts, shape))
+            array = numbers.reshape(shape, order="F")[inside]
+            boxes.append((number_of_level, [int(a) for a in box[:dim]], array))
+        if begin != data.shape[0]:
+            raise Refused(f"{path}: a level has another number of values than its boxes")
+    step = np.ones(dim) * levels[0].attrs["vec_dx" if "vec_dx" in levels[0].attrs else "dx"]
+    start = np.min([low for level, low, _ in boxes if level == 0], axis=0)
+    ratios = [np.ravel(level.attrs["ref_ratio"])[0] for level in levels[:-1]]
+    place = {"ratio": [int(each) for each in ratios], "spacing": step.tolist()}
+    return boxes, place | {"origin": (start * step).tolist(), "name": wanted}
+
+
+def read_athena(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
+    """Leaves alone: the blocks that they replaced are added, with one array that nobody reads."""
+    coordinates = np.ravel(file.attrs["Coordinates"])[0].decode()
+    if coordinates not in ("cartesian", "minkowski"):
+        raise Refused(f"{path} has {coordinates} coordinates, not cartesian ones")
+    extent = np.array([file.attrs[f"RootGridX{d + 1}"] for d in range(3)], float)
+    size = [int(n) for n in file.attrs["MeshBlockSize"]]
+    dim = 2 if size[2] == 1 else 3
+    if size[1] == 1 or (extent[:dim, 2] != 1).any():
+        raise Refused(f"{path} has one dimension, or cells of several sizes")
+    names = [each.decode() for each in file.attrs["VariableNames"]]
+    wanted = chosen(path, name, names)
+    sets = [each.decode() for each in file.attrs["DatasetNames"]]
+    members = [(s, v) for s, n in zip(sets, file.attrs["NumVariables"]) for v in range(n)]
+    data_set, variable = members[names.index(wanted)]
+    data = file[data_set][variable]
+    levels = [int(level) for level in file["Levels"]]
+    places = [tuple(int(a) for a in each[:dim]) for each in file["LogicalLocations"]]
+    step = (extent[:, 1] - extent[:, 0]) / file.attrs["RootGridSize"]
+    begin = extent[0, 0] + places[0][0] * size[0] * step[0] / 2 ** levels[0]
+    if abs(file["x1f"][0, 0] - begin) > 0.1 * step[0] / 2 ** levels[0]:
+        raise Refused(f"{path}: its blocks do not lie at their places: ghost zones are not read")
+    boxes: Boxes = []
+    for block, (level, where) in enumerate(zip(levels, places)):
+        low = [a * n for a, n in zip(where, size)]
+        boxes.append((level, low, data[block].T.reshape(size[:dim])))
+    replaced = {
+        (upper, tuple(a >> (level - upper) for a in where))
+        for level, where in zip(levels, places)
+        for upper in range(level)
+    }
+    unread = np.full(size[:dim], np.nan, data.dtype)
+    boxes += [(level, [a * n for a, n in zip(where, size)], unread) for level, where in replaced]
+    place = {"ratio": [2] * max(levels), "spacing": step[:dim].tolist()}
+    return boxes, place | {"origin": extent[:dim, 0].tolist(), "name": wanted}
+
+
+def whole(numbers: np.ndarray, path: str) -> list[int]:
+    """Places in whole cells or blocks."""
+    rounded = np.rint(numbers)
+    if np.abs(numbers - rounded).max() > 1e-2:
+        raise Refused(f"{path}: a box does not lie on cells of its level")
+    return [int(n) for n in rounded]
+
+
+def read_flash(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
+    """Blocks of one size, those that finer ones replace among them."""
+    names = [each.decode().strip() for each in np.ravel(file["unknown names"][()])]
+    wanted = chosen(path, name, names)
+    data = file[wanted.ljust(4)][()]
+    size = np.array([n for n in data.shape[:0:-1] if n > 1])
+    if len(size) not in (2, 3):
+        raise Refused(f"{path} has {len(size)} dimensions, not 2 or 3")
+    levels = [int(level) - 1 for level in file["refine level"][()]]
+    ends = file["bounding box"][()][:, : len(size)].astype(float)
+    start = ends[:, :, 0].min(axis=0)
+    length = (ends[:, :, 1] - ends[:, :, 0])[levels.index(0)]
+    boxes: Boxes = []
+    for block, level in enumerate(levels):
+        low = whole((ends[block, :, 0] - start) / length * 2**level, path) * size
+        boxes.append((level, low.tolist(), data[block].T.reshape(size)))
+    place = {"ratio": [2] * max(levels), "spacing": (length / size).tolist()}
+    return boxes, place | {"origin": start.tolist(), "name": wanted}
+
+
+def grids_of(path: str) -> list[dict[str, str]]:
+    """What Enzo's text says of each grid."""
+    grids: list[dict[str, str]] = []
+    with open(path, encoding="utf-8", errors="replace") as text:
+        for line in text:
+            key, equals, value = line.partition("=")
+            if equals and key.strip() == "Grid":
+                grids.append({})
+            if equals and grids:
+                grids[-1][key.strip()] = value.strip()
+    if not grids:
+        raise Refused(f"{path} names no grids")
+    return grids
+
+
+def read_enzo(path: str, name: str, open_file: Any) -> tuple[Boxes, dict[str, Any]]:
+    """A text lists the grids, whose levels follow from the sizes of their cells."""
+    grids = grids_of(path)
+    numbers = lambda grid, key: np.array(grid[key].split(), float)  # noqa: E731
+    start = np.min([numbers(grid, "GridLeftEdge") for grid in grids], axis=0)
+    found: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+    for grid in grids:
+        low = numbers(grid, "GridLeftEdge")
+        size = numbers(grid, "GridEndIndex") - numbers(grid, "GridStartIndex") + 1
+        file = os.path.join(os.path.dirname(path), os.path.basename(grid["BaryonFileName"]))
+        with open_file(file, "r") as opened:
+            group = opened[f"Grid{int(grid['Grid']):08d}"]
+            shape = tuple(int(n) for n in size[::-1])
+            name = chosen(path, name, [each for each in group if group[each].shape == shape])
+            found.append((low, (numbers(grid, "GridRightEdge") - low) / size, group[name][()].T))
+    steps: list[np.ndarray] = []
+    for step in sorted((step for _, step, _ in found), key=lambda step: -float(step[0])):
+        if not steps or step[0] < 0.75 * steps[-1][0]:
+            steps.append(step)
+    level_of = lambda step: int(np.argmin([abs(s[0] - step[0]) for s in steps]))  # noqa: E731
+    boxes = [(level_of(step), whole((low - start) / step, path), a) for low, step, a in found]
+    boxes.sort(key=lambda box: box[0])
+    ratios = [whole(coarse / fine, path)[0] for coarse, fine in zip(steps, steps[1:])]
+    place = {"ratio": ratios, "spacing": steps[0].tolist(), "origin": start.tolist()}
+    return boxes, place | {"name": name}
