@@ -76,8 +76,7 @@ def load(
     type        for .raw alone: of the samples, "uint8" to "float64"
     big_endian  for .raw alone: whether the highest byte of a sample comes first
     spacing     for .raw alone: distance of samples along x, y and z, in units of length; None: 1
-    rule        for boxes other than plotfiles: of the values at nodes, as Blocks() has it; None:
-                "smooth"
+    rule        for boxes of cells: of the values at nodes, as Blocks() has it; None: "smooth"
 
     Raises IoError where the file cannot be read or is damaged, InvalidInput where there is no such
     field or an argument does not fit the format.
@@ -97,8 +96,8 @@ def load(
     named = dicom or plotfile or boxes or suffix in (".nestgrid", ".vti", ".vtu")
     if array and not named:
         raise InvalidInput(f"load(): '{path}' has one array, which has no name: leave out array")
-    if rule is not None and (plotfile or not boxes):
-        raise InvalidInput(f"load(): rule is for boxes of cells other than plotfiles, not '{path}'")
+    if rule is not None and not (plotfile or boxes):
+        raise InvalidInput(f"load(): rule is for boxes of cells, not '{path}'")
     choice = Choice(frame, component, magnitude)
     if (plotfile or suffix in (".nestgrid", ".raw")) and choice != Choice():
         raise InvalidInput(
@@ -106,7 +105,7 @@ def load(
             "number per sample"
         )
     if plotfile:
-        return _hierarchy(plotfile, array)
+        return _hierarchy(plotfile, array, rule or "smooth")
     if suffix == ".nestgrid":
         return _hierarchy(str(path), array)
     if dicom:
@@ -158,7 +157,7 @@ def _split(place: dict[str, Any]) -> dict[str, Any]:
 class LoadedField(Field):
     """The field of a .nestgrid file or a plotfile."""
 
-    _file: tuple[str, str, tuple[int, int]]
+    _file: tuple[str, str, str, tuple[int, int]]
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _loaded_again, self._file
@@ -167,7 +166,7 @@ class LoadedField(Field):
 class LoadedFrames(Frames):
     """The frames of a .nestgrid file."""
 
-    _file: tuple[str, str, tuple[int, int]]
+    _file: tuple[str, str, str, tuple[int, int]]
 
     def _size(self) -> str:
         return f"dimension {self.at(self.times[0]).dimension}"
@@ -181,9 +180,9 @@ class LoadedFrames(Frames):
         return _loaded_again, self._file
 
 
-def _hierarchy(path: str, array: str) -> LoadedField | LoadedFrames:
-    loaded, name = _nestgrid.load(path, array)
-    file = (os.path.abspath(path), array, _stamp(path))
+def _hierarchy(path: str, array: str, rule: str = "smooth") -> LoadedField | LoadedFrames:
+    loaded, name = _nestgrid.load(path, array, rule)
+    file = (os.path.abspath(path), array, rule, _stamp(path))
     if isinstance(loaded, _nestgrid.Frames):
         frames = LoadedFrames.__new__(LoadedFrames)
         frames._frames = loaded
@@ -203,14 +202,14 @@ def _stamp(path: str) -> tuple[int, int]:
     return status.st_size, status.st_mtime_ns
 
 
-def _loaded_again(path: str, array: str, stamp: tuple[int, int]) -> Field | Frames:
+def _loaded_again(path: str, array: str, rule: str, stamp: tuple[int, int]) -> Field | Frames:
     """What was pickled as the path of its file.
 
     Raises IoError where the file has changed since.
     """
     if os.path.exists(path) and _stamp(path) != stamp:
         raise IoError(f"{path} has changed since the field was pickled, which keeps its path only")
-    return _hierarchy(path, array)
+    return _hierarchy(path, array, rule)
 
 
 def _require_file(path: str) -> None:

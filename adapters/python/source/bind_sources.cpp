@@ -102,6 +102,11 @@ std::shared_ptr<Frames> frames_of(const std::vector<py::array>& arrays,
     });
 }
 
+CellRule rule_named(const std::string& name) {
+    if (name == "smooth") return CellRule::smooth;
+    return name == "means" ? CellRule::sharp_means : CellRule::sharp_centres;
+}
+
 /// \param boxes level, lowest cell and array of each, of one type
 std::shared_ptr<Source> blocks_of(
     const std::vector<std::tuple<int, std::vector<int>, py::array>>& boxes,
@@ -127,9 +132,7 @@ std::shared_ptr<Source> blocks_of(
     arrays.ratios = ratios;
     arrays.spacing = along_indices(spacing, indices, 1, "spacing");
     arrays.origin = along_indices(origin, indices, 0, "origin");
-    arrays.rule = rule == "smooth"  ? CellRule::smooth
-                  : rule == "means" ? CellRule::sharp_means
-                                    : CellRule::sharp_centres;
+    arrays.rule = rule_named(rule);
     arrays.memory = std::make_shared<const std::vector<std::shared_ptr<const void>>>(memory);
     return interruptible(1, [arrays](const Call& call) { return make_blocks(arrays, call); });
 }
@@ -196,10 +199,11 @@ std::shared_ptr<Source> field_at(const Frames& frames, double t, bool cubic, int
 }
 
 /// The field, or its frames, and its name.
-py::tuple loaded(const std::string& path, const std::string& array) {
-    const auto field = interruptible(1, [path, array](const Call& call) {
+/// \param rule of the nodes of plotfiles
+py::tuple loaded(const std::string& path, const std::string& array, const std::string& rule) {
+    const auto field = interruptible(1, [path, array, rule = rule_named(rule)](const Call& call) {
         const bool is_plotfile = std::filesystem::is_directory(path);
-        return std::make_shared<LoadedField>(is_plotfile ? load_plotfile(path, array, call)
+        return std::make_shared<LoadedField>(is_plotfile ? load_plotfile(path, array, rule, call)
                                                          : load_hierarchy(path, array, call));
     });
     if (field->frames.count() == 1) {
@@ -248,7 +252,7 @@ void bind_sources(py::module_& m) {
         .def_property_readonly("times", &Frames::times)
         .def("clear", &Frames::clear)
         .def("at", &field_at, py::arg("t"), py::arg("cubic"), py::arg("threads"));
-    m.def("load", &loaded, py::arg("path"), py::arg("array"));
+    m.def("load", &loaded, py::arg("path"), py::arg("array"), py::arg("rule"));
 }
 
 }  // namespace nestgrid::python

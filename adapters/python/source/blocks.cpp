@@ -60,12 +60,12 @@ std::shared_ptr<Source> source_of(const BoxArrays& given, const Call& call) {
 
 template <int dim, class Real>
 LoadedField field_of(const std::shared_ptr<const AmrexPlotfile>& file, const std::string& array,
-                     const Call& call) {
+                     CellRule rule, const Call& call) {
     const std::size_t field = index_of_field(file->fields(), array);
     auto grid = std::make_shared<const BlockGrid<dim>>(file->blocks<dim>());
-    return {frames_of(std::move(grid), file->arrays<dim, Real>(field), CellRule::smooth,
-                      file->time(), file, call),
-            file->fields()[field]};
+    return {
+        frames_of(std::move(grid), file->arrays<dim, Real>(field), rule, file->time(), file, call),
+        file->fields()[field]};
 }
 
 }  // namespace
@@ -79,14 +79,14 @@ std::shared_ptr<Source> make_blocks(const BoxArrays& given, const Call& call) {
 }
 
 LoadedField load_plotfile(const std::filesystem::path& path, const std::string& array,
-                          const Call& call) {
+                          CellRule rule, const Call& call) {
     const auto file = std::make_shared<const AmrexPlotfile>(path);
     if (file->dimension() == 2) {
-        return file->is_double() ? field_of<2, double>(file, array, call)
-                                 : field_of<2, float>(file, array, call);
+        return file->is_double() ? field_of<2, double>(file, array, rule, call)
+                                 : field_of<2, float>(file, array, rule, call);
     }
-    return file->is_double() ? field_of<3, double>(file, array, call)
-                             : field_of<3, float>(file, array, call);
+    return file->is_double() ? field_of<3, double>(file, array, rule, call)
+                             : field_of<3, float>(file, array, rule, call);
 }
 
 }  // namespace nestgrid::python

@@ -133,8 +133,9 @@ struct LoadedField {
 LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array,
                            const Call& call);
 /// Loads a plotfile of AMReX, a folder whose files are mapped. Parameters as above.
+/// \param rule of the values at nodes
 LoadedField load_plotfile(const std::filesystem::path& path, const std::string& array,
-                          const Call& call);
+                          CellRule rule, const Call& call);
 /// The place of the field with a name; an empty name stands for the only one.
 /// \throw InvalidInput where there is none
 std::size_t index_of_field(const std::vector<std::string>& names, const std::string& name);

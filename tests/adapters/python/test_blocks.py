@@ -158,8 +158,11 @@ def test_plotfiles(tmp_path):
         nestgrid.load(folder, frame=1)
     with pytest.raises(nestgrid.InvalidInput, match="dims is for .raw files"):
         nestgrid.load(folder, dims=(1, 2, 3))
-    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes of cells other than plotfiles"):
-        nestgrid.load(folder, rule="means")
+    for rule in ("smooth", "centres", "means"):
+        field = nestgrid.load(folder, rule=rule)
+        expected = blocks(rule=rule).isosurface(0).vertices
+        for each in (field, pickle.loads(pickle.dumps(field))):
+            np.testing.assert_array_equal(each.isosurface(0).vertices, expected, rule)
     data = folder / "Level_2" / "Cell_D_00000"
     data.write_bytes(data.read_bytes()[:-1])
     with pytest.raises(nestgrid.IoError, match="is truncated"):
