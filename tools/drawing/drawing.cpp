@@ -135,11 +135,10 @@ private:
         const bool searches = projection.max_triangles > 0;
         const auto options = isosurface_options(searches || executor_.concurrency() == 1);
         if (prerolls().field().dimension() == 3) {
-            return take(drawn, request_.upper
-                                   ? isoband<3>(prerolls(), isovalue, *request_.upper, projection,
-                                                options, work)
-                                   : nestgrid::isosurface<3>(prerolls(), isovalue, projection,
-                                                             options, work));
+            return take(drawn, request_.upper ? isoband<3>(prerolls(), isovalue, *request_.upper,
+                                                           projection, options, work)
+                                              : nestgrid::isosurface<3>(prerolls(), isovalue,
+                                                                        projection, options, work));
         }
         auto lines =
             request_.upper
