@@ -367,7 +367,7 @@ class Field:
             _nestgrid.slice(self._source, function, *options, projection, threads), self
         )
 
-    @takes(values=numbers)
+    @takes(values=numbers, max_segments=optional(whole(1)))
     def isolines(
         self,
         values: float | Iterable[float] | np.ndarray,
