@@ -461,6 +461,10 @@ def test_bands_lie_between_their_values(gyroid):
         sides = [volume.isosurface(level, **options) for level in (-0.2, 0.3)]
         if "error" not in options and "indicator" not in options:
             assert len(band.triangles) == sum(len(side.triangles) for side in sides)
+    most = len(volume.isoband(-0.2, 0.3, 0.05).triangles)
+    assert 0.9 * most < len(volume.isoband(-0.2, 0.3, max_triangles=most).triangles) <= most
+    lines = nestgrid.Volume(gyroid[0]).isolines([-0.2, 0.3], max_segments=100)
+    assert 0 < sum(len(line) - 1 for line in lines) <= 100
     with refused("the lower isovalue is not below the upper one"):
         volume.isoband(0.3, -0.2)
     with refused("dimension 2, not 3"):
