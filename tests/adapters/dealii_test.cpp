@@ -388,7 +388,7 @@ TEST(Dealii, CopiesNothing) {
         const std::size_t start = allocated_bytes();
         const DealiiGrid<3> grid(triangulation);
         const DealiiField field(grid, dofs, values);
-        EXPECT_LE(allocated_bytes() - start, triangulation.n_vertices() / 8 + 1024);
+        EXPECT_LE(allocated_bytes() - start, triangulation.n_vertices() / 8 + 2048);
         const HierarchicalIndicator indicator(grid, field);
         double area = 0;
         const auto add = [&](const std::array<Point, 3>& x) {

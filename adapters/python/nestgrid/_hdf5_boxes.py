@@ -115,7 +115,7 @@ def read_flash(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
     length = (ends[:, :, 1] - ends[:, :, 0])[levels.index(0)]
     boxes: Boxes = []
     for block, level in enumerate(levels):
-        low = whole((ends[block, :, 0] - start) / length * 2**level, path) * size
+        low = np.array(whole((ends[block, :, 0] - start) / length * 2**level, path)) * size
         boxes.append((level, low.tolist(), data[block].T.reshape(size)))
     place = {"ratio": [2] * max(levels), "spacing": (length / size).tolist()}
     return boxes, place | {"origin": start.tolist(), "name": wanted}

@@ -214,7 +214,7 @@ def test_rules_of_formats_of_codes(amr_files):
     }
     assert all(np.ptp(each) < 1e-12 for each in areas.values())
     assert len({round(each[0], 9) for each in areas.values()}) == 3
-    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes of cells .*'a.nii'"):
+    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes of cells, not 'a.nii'"):
         nestgrid.load("a.nii", rule="means")
 
 
