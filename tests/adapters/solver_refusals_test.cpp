@@ -44,10 +44,17 @@ TEST(Refusals, OfDealii) {
         Field(grid, other.dofs, values);
     });
     rows.add("a component that is not there", [&] { Field(grid, problem.dofs, values, {2}); });
-    rows.add("discontinuous elements", [&] {
+    const auto with_element = [&](const dealii::FE_DGQ<3>& element, const auto& function) {
         dealii::DoFHandler<3> jumps(problem.triangulation);
-        jumps.distribute_dofs(dealii::FE_DGQ<3>(1));
-        Field(grid, jumps, Vector(jumps.n_dofs()));
+        jumps.distribute_dofs(element);
+        const Vector zeros(jumps.n_dofs());
+        function(Field(grid, jumps, zeros));
+    };
+    rows.add("one value in a cell, elements without nodes",
+             [&] { with_element(dealii::FE_DGQ<3>(0), [](const Field&) {}); });
+    rows.add("discontinuous elements, but within an error", [&] {
+        with_element(dealii::FE_DGQ<3>(1),
+                     [&](const Field& field) { isosurface(grid, field, 0.5); });
     });
     rows.add("cells that are refined in some directions only", [] {
         dealii::Triangulation<3> across;

@@ -383,7 +383,7 @@ TEST(Drawing, RefusesWhatMakesNoSense) {
     expect_refused([&] { slice(prerolls, plane, {.threshold = 1, .keeps_distance = true}); },
                    "isosurfaces in space");
     expect_refused([&] { isoband<3>(prerolls, 1, 2, collapsed); }, "bands");
-    expect_refused([&] { isoband<3>(prerolls, 1, 2, {.max_triangles = 9}); }, "bands");
+    expect_refused([&] { isoband<3>(prerolls, 1, 2, {.max_triangles = 9}); }, "more than 9");
     expect_refused([&] { isosurface<2>(prerolls, 2, {}); }, "dimension 3, not 2");
     expect_refused([&] { height_field(prerolls, 1, {}); }, "dimension 3, not 2");
     const std::vector<Point> points{{2, 2, 2}};
