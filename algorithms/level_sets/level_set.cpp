@@ -96,7 +96,8 @@ void LevelSet<dimension, Real>::begin(const LevelSearch<Real>& search,
 /// attributes that a sink has taken.
 template <int dimension, class Real>
 bool LevelSet<dimension, Real>::knows_by_names(DrawnSurface<dimension>& surface) const {
-    return !surface.names_vertices() || shared() != nullptr ||
+    const bool on_several_ranks = shared() != nullptr && shared()->count() > 0;
+    return !surface.names_vertices() || on_several_ranks ||
            walk_->hierarchy().offers(Feature::hidden) ||
            (at_hand_.cuts.attribute_count() > 0 && !surface.builder().keeps_attributes());
 }

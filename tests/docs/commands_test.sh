@@ -128,6 +128,7 @@ python() {
     [ -s "$source/$1" ] || fail "$page: there is no $1"
     if [[ "$1" == tests/benchmarks/* ]]; then
         grep -qF "/${1##*/}" "$source/tests/benchmarks/CMakeLists.txt" || fail "$page: no test runs $1"
+        for file in "${@:2}"; do [[ "$file" != docs/figures/* ]] || picture "$file"; done
         return
     fi
     picture "$2"

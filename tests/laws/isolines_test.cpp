@@ -444,7 +444,6 @@ TEST(Isolines, RefusesWrongInput) {
     const NodeField<OctreeGrid<3>, double> solid(space[0], eight);
     EXPECT_THROW(isolines(plane[0], flat, std::array{nan}), InvalidInput);
     EXPECT_THROW(isolines(plane[0], flat, std::array{0.0}, {.threshold = -1}), InvalidInput);
-    EXPECT_THROW(isolines(plane[0], flat, std::array{0.0}, {.max_triangles = 9}), InvalidInput);
     EXPECT_THROW(isolines(erase(space[0], solid), std::array{0.0}), InvalidInput);
 }
 
