@@ -50,7 +50,7 @@ public:
         Prerolls own(field);
         return draw(own, work);
     }
-    /// What ranks share, once they do; null without ranks.
+    /// The nodes and values that ranks share; null without ranks, and before they are known.
     std::shared_ptr<const PartOnRanks> part() const { return part_; }
     /// Whether ranks have begun to talk to each other.
     bool talks() const { return talks_; }

@@ -21,7 +21,7 @@ public:
     nestgrid::Prerolls& of(const nestgrid_grid& grid, const nestgrid_field& field,
                            const nestgrid::FieldOnGrid& hierarchy);
 
-    /// What ranks share of the tables that are asked for first. Collective.
+    /// The nodes and values that ranks share, made of the tables of the first call. Collective.
     std::shared_ptr<const nestgrid::PartOnRanks> part_of(const nestgrid_ranks& ranks,
                                                          const nestgrid_grid& grid,
                                                          const nestgrid::FieldOnGrid& hierarchy);

@@ -43,7 +43,7 @@ public:
     /// \throw InvalidInput or GridError as Distributed and DistributedField do
     PartOnRanks(const nestgrid_ranks& ranks, const nestgrid_grid& grid, const FieldOnGrid& field);
 
-    /// The same field, of another hierarchy perhaps, as it is drawn on ranks.
+    /// The field as ranks draw it. Each call of C may hand in another hierarchy of the same field.
     FieldOnGrid on_ranks(const FieldOnGrid& field) const;
     const engine::SharedNodes& shared() const { return *shared_; }
 

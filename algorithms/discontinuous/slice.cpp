@@ -52,8 +52,10 @@ double PieceSlice::draw(const View& view, std::span<double> values) {
     return 2 * engine::affine_residual(x, std::span<const double>(data).first(x.size()));
 }
 
-DiscontinuousSurface cut(const DiscontinuousData& data, const LevelFunction& function,
-                         const DiscontinuousOptions& options, const Executor& executor) {
+}  // namespace
+
+DiscontinuousSurface slice(const DiscontinuousData& data, const LevelFunction& function,
+                           const DiscontinuousOptions& options, const Executor& executor) {
     engine::require_drawable(data, 3, options);
     const LevelFunction* const functions[] = {&function};
     const engine::WidenedHierarchy<float> hierarchy = engine::widened(data, 1);
@@ -61,13 +63,6 @@ DiscontinuousSurface cut(const DiscontinuousData& data, const LevelFunction& fun
     return engine::draw_pieces(hierarchy, data, options, 1, executor, [&](const auto& pieces) {
         return std::make_unique<PieceSlice>(pieces, placed);
     });
-}
-
-}  // namespace
-
-DiscontinuousSurface slice(const DiscontinuousData& data, const LevelFunction& function,
-                           const DiscontinuousOptions& options, const Executor& executor) {
-    return cut(data, function, options, executor);
 }
 
 }  // namespace nestgrid

@@ -84,14 +84,7 @@ void Triangulation<Real>::add(Base& part) {
 
 template <class Real>
 void Triangulation<Real>::agree(Ranks& ranks) {
-    double error = surface_.error_bound();
-    std::array<double*, 1> greatest{&error};
-    take_greatest(ranks, greatest);
-    surface_.raise_error_bound(error);
-    std::uint64_t extracted = surface_.extracted();
-    std::array<std::uint64_t*, 1> sum{&extracted};
-    take_sums(ranks, sum);
-    surface_.add_extracted(extracted - surface_.extracted());
+    surface_.agree(ranks);
     Base::agree(ranks);
 }
 

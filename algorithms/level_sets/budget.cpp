@@ -26,6 +26,18 @@ TriangleBudget find_threshold(const Levels<Real>& levels, const MakeCriterion& c
 }
 
 template <int dimension, class Real>
+TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
+                              const MakeCriterion& criterion_at, const SearchBounds& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                              const Executor& executor) {
+    Levels<Real> levels{&hierarchy, {}};
+    together(hierarchy.facts().shared, "a number of triangles",
+             [&] { levels = isosurface_levels(hierarchy, isovalues); });
+    return find_threshold<dimension>(levels, criterion_at, bounds, max_triangles, options,
+                                     executor);
+}
+
+template <int dimension, class Real>
 Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator& indicator,
                         const Projection& projection, const IsosurfaceOptions& options,
                         const Executor& executor) {
@@ -49,11 +61,8 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
                               const MakeCriterion& criterion_at, const SearchBounds& bounds,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options,
                               const Executor& executor) {
-    engine::Levels<Real> levels{&hierarchy, {}};
-    engine::together(hierarchy.facts().shared, "a number of triangles", [&] {
-        levels = engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
-    });
-    return engine::find_threshold<dimension>(levels, criterion_at, bounds, max_triangles, options,
+    return engine::find_threshold<dimension>(hierarchy, std::span<const double>(&isovalue, 1),
+                                             criterion_at, bounds, max_triangles, options,
                                              executor);
 }
 
@@ -63,6 +72,9 @@ TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
     template TriangleBudget engine::find_threshold<dimension>(                                     \
         const engine::Levels<Real>&, const detail::MakeCriterion&, const detail::SearchBounds&,    \
         std::uint64_t, const IsosurfaceOptions&, const Executor&);                                 \
+    template TriangleBudget engine::find_threshold<dimension>(                                     \
+        const Hierarchy<Real>&, std::span<const double>, const detail::MakeCriterion&,             \
+        const detail::SearchBounds&, std::uint64_t, const IsosurfaceOptions&, const Executor&);    \
     template Threshold engine::criterion_for<dimension>(                                           \
         const engine::Levels<Real>&, const HierarchicalIndicator&, const Projection&,              \
         const IsosurfaceOptions&, const Executor&);                                                \

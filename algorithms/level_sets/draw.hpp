@@ -75,6 +75,15 @@ TriangleBudget find_threshold(const Levels<Real>& levels,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options,
                               const Executor& executor);
 
+/// The same for the isosurfaces of component 0, all together.
+/// \throw InvalidInput also where an isovalue is not a number, on all ranks alike
+template <int dimension, class Real>
+TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
+                              const nestgrid::detail::MakeCriterion& criterion_at,
+                              const nestgrid::detail::SearchBounds& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                              const Executor& executor);
+
 /// S from the threshold or the number of triangles of a projection.
 /// \throw InvalidInput as find_threshold() and Projection::check()
 template <int dimension, class Real>

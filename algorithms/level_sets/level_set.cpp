@@ -193,21 +193,9 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::agree(Ranks& ranks) {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        DrawnSurface<dimension>& surface = surfaces_[i];
-        double error = surface.error_bound();
-        double off_level = surface.off_level();
         // What a criterion promises it knows of the nodes of this rank.
-        double leaf_error =
-            std::max(surface.leaf_error(), search_->surface_error(search_->levels()[i]));
-        std::array<double*, 3> greatest{&error, &off_level, &leaf_error};
-        take_greatest(ranks, greatest);
-        surface.raise_error_bound(error);
-        surface.raise_off_level(off_level);
-        surface.raise_leaf_error(leaf_error);
-        std::uint64_t extracted = surface.extracted();
-        std::array<std::uint64_t*, 1> sum{&extracted};
-        take_sums(ranks, sum);
-        surface.add_extracted(extracted - surface.extracted());
+        surfaces_[i].raise_leaf_error(search_->surface_error(search_->levels()[i]));
+        surfaces_[i].agree(ranks);
     }
     Base::agree(ranks);
 }

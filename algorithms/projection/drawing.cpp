@@ -128,6 +128,48 @@ void check_isosurface(const Projection& projection, const IsosurfaceOptions& opt
     }
 }
 
+/// Counts the simplices of level sets of polynomials. The arguments are borrowed.
+template <int dimension>
+engine::CountWithin counting(std::span<const double> isovalues, const IsosurfaceOptions& options,
+                             const Work& work) {
+    return [isovalues, &options, &work](const VirtualRefinement& fine, std::uint64_t most) {
+        const auto levels = engine::isosurface_levels<double>(fine, isovalues);
+        return engine::count_simplices<dimension>(levels, fine.criterion(), fine.bounds(), most,
+                                                  options, work.executor);
+    };
+}
+
+/// Draws level sets of one walk, perhaps within a number of triangles (segments) of all together.
+/// \param dimension of the grid
+/// \param draw draw(hierarchy, criterion, bounds)
+template <class Result, int dimension, class Draw>
+Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double> isovalues,
+                                const Projection& projection, const IsosurfaceOptions& options,
+                                const Work& work, const Draw& draw) {
+    const auto within = [&](const VirtualRefinement& fine) {
+        return draw(fine, fine.criterion(), fine.bounds());
+    };
+    const auto count = counting<dimension>(isovalues, options, work);
+    if (auto drawn =
+            engine::within_error<Result>(prerolls, projection, work, dimension, within, count)) {
+        return *std::move(drawn);
+    }
+    return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
+        const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
+        const Bounds& bounds = criteria.bounds();
+        const TriangleBudget search = engine::threshold_of(projection, work, [&] {
+            const auto find = [&](const detail::MakeCriterion& make) {
+                return engine::find_threshold<dimension>(
+                    hierarchy, isovalues, make, {bounds, bounds.greatest() - bounds.least()},
+                    projection.max_triangles, options, work.executor);
+            };
+            return detail::with_made(engine::criteria_at(criteria), find);
+        });
+        work.begin("drawing");
+        return Projected<Result>{draw(hierarchy, criteria.at(search.threshold), bounds), search};
+    });
+}
+
 }  // namespace
 
 double default_error(const HighOrder& data) {
@@ -155,41 +197,31 @@ Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double iso
                                             const IsosurfaceOptions& options, const Work& work) {
     engine::check_first(prerolls, projection, work, "isosurfaces",
                         [&] { check_isosurface(projection, options, dimension); });
-    const auto within = [&](const VirtualRefinement& fine) {
-        return engine::isosurface<dimension>(fine, isovalue, fine.criterion(), fine.bounds(),
-                                             options, work.executor);
+    const std::span<const double> isovalues(&isovalue, 1);
+    const auto once = [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
+        return engine::isosurface<dimension>(hierarchy, isovalue, criterion, bounds, options,
+                                             work.executor);
     };
-    const auto count = [&](const VirtualRefinement& fine, std::uint64_t most) {
-        const auto levels = engine::isosurface_levels<double>(fine, std::span(&isovalue, 1));
-        return engine::count_simplices<dimension>(levels, fine.criterion(), fine.bounds(), most,
-                                                  options, work.executor);
-    };
-    if (auto drawn = engine::within_error<Isosurface<dimension>>(prerolls, projection, work,
-                                                                 dimension, within, count)) {
-        return *std::move(drawn);
-    }
-    return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
-        const Executor& executor = work.executor;
-        const Criteria criteria(prerolls, engine::told(projection), std::span(&isovalue, 1), work);
-        Projected<Isosurface<dimension>> drawn;
-        if constexpr (dimension == 3) {
+    if constexpr (dimension == 2) {
+        return draw_together<Isosurface<2>, 2>(prerolls, isovalues, projection, options, work,
+                                               once);
+    } else {
+        const auto within = [&](const VirtualRefinement& fine) {
+            return once(fine, fine.criterion(), fine.bounds());
+        };
+        if (auto drawn = engine::within_error<Isosurface<3>>(
+                prerolls, projection, work, 3, within, counting<3>(isovalues, options, work))) {
+            return *std::move(drawn);
+        }
+        return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
+            const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
             KeptIsosurface surface(hierarchy, isovalue, criteria, options, work);
             const TriangleBudget search = surface.find();
-            drawn = surface.draw(search.threshold);
+            Projected<Isosurface<3>> drawn = surface.draw(search.threshold);
             drawn.search = search;
-        } else {
-            drawn.search = engine::threshold_of(projection, work, [&] {
-                return find_threshold<2>(hierarchy, isovalue, engine::criteria_at(criteria),
-                                         criteria.bounds(), projection.max_triangles, options,
-                                         executor);
-            });
-            work.begin("drawing");
-            static_cast<Isosurface<2>&>(drawn) =
-                engine::isosurface<2>(hierarchy, isovalue, criteria.at(drawn.search.threshold),
-                                      criteria.bounds(), options, executor);
-        }
-        return drawn;
-    });
+            return drawn;
+        });
+    }
 }
 template Projected<Isosurface<2>> isosurface<2>(const Prerolls&, double, const Projection&,
                                                 const IsosurfaceOptions&, const Work&);
@@ -219,46 +251,6 @@ template std::vector<Isosurface<3>> detail::draw_isosurfaces(const Prerolls&,
                                                              const SurfaceTargets<3>&,
                                                              const Projection&,
                                                              const IsosurfaceOptions&, const Work&);
-
-namespace {
-
-/// Draws level sets of one walk, perhaps within a number of triangles (segments) of all together.
-/// \param dimension of the grid
-/// \param draw draw(hierarchy, criterion, bounds)
-template <class Result, int dimension, class Draw>
-Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double> isovalues,
-                                const Projection& projection, const IsosurfaceOptions& options,
-                                const Work& work, const Draw& draw) {
-    const auto within = [&](const VirtualRefinement& fine) {
-        return draw(fine, fine.criterion(), fine.bounds());
-    };
-    const auto count = [&](const VirtualRefinement& fine, std::uint64_t most) {
-        const auto levels = engine::isosurface_levels<double>(fine, isovalues);
-        return engine::count_simplices<dimension>(levels, fine.criterion(), fine.bounds(), most,
-                                                  options, work.executor);
-    };
-    if (auto drawn =
-            engine::within_error<Result>(prerolls, projection, work, dimension, within, count)) {
-        return *std::move(drawn);
-    }
-    return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
-        const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
-        const Bounds& bounds = criteria.bounds();
-        const TriangleBudget search = engine::threshold_of(projection, work, [&] {
-            const engine::Levels levels = engine::isosurface_levels(hierarchy, isovalues);
-            const auto find = [&](const detail::MakeCriterion& make) {
-                return engine::find_threshold<dimension>(
-                    levels, make, {bounds, bounds.greatest() - bounds.least()},
-                    projection.max_triangles, options, work.executor);
-            };
-            return detail::with_made(engine::criteria_at(criteria), find);
-        });
-        work.begin("drawing");
-        return Projected<Result>{draw(hierarchy, criteria.at(search.threshold), bounds), search};
-    });
-}
-
-}  // namespace
 
 template <int dimension>
 Projected<Isosurface<dimension>> isoband(const Prerolls& prerolls, double low, double high,

@@ -72,6 +72,14 @@ void DrawnSurface<dimension>::name_as_own(Number first, std::size_t count) {
 }
 
 template <int dimension>
+void DrawnSurface<dimension>::agree(Ranks& ranks) {
+    std::array<double*, 3> greatest{&error_bound_, &off_level_, &leaf_error_};
+    take_greatest(ranks, greatest);
+    std::array<std::uint64_t*, 1> sum{&extracted_};
+    take_sums(ranks, sum);
+}
+
+template <int dimension>
 void DrawnSurface<dimension>::verify(Number number, const Point& x) const {
     if (position(number) == x) return;
     throw GridError("two elements put the vertex " + std::to_string(number) +

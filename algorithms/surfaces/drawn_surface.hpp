@@ -11,6 +11,7 @@
 
 namespace nestgrid {
 
+class Ranks;
 struct VertexCopy;
 
 }  // namespace nestgrid
@@ -169,6 +170,9 @@ public:
         raise_leaf_error(part.leaf_error_);
         raise_position_bound(part.position_bound_);
     }
+
+    /// Takes the elements counted and the bounds of all ranks together. Collective.
+    void agree(Ranks& ranks);
 
     /// Makes the normals, and merges the vertices at each node (merge_at_nodes.hpp), as far as each
     /// is wanted. Requires that everything is drawn; merging requires a surface of triangles.

@@ -130,20 +130,24 @@ private:
         at_zero.colour_tolerance = projection.colour_tolerance;
         return at_zero;
     }
-    void draw_isosurface(Drawn& drawn, const Projection& projection, const Work& work) const {
+    template <int dimension>
+    Projected<nestgrid::Isosurface<dimension>> level_set(const Projection& projection,
+                                                         const IsosurfaceOptions& options,
+                                                         const Work& work) const {
         const double isovalue = *request_.isovalue;
+        if (!request_.upper) {
+            return nestgrid::isosurface<dimension>(prerolls(), isovalue, projection, options, work);
+        }
+        return nestgrid::isoband<dimension>(prerolls(), isovalue, *request_.upper, projection,
+                                            options, work);
+    }
+    void draw_isosurface(Drawn& drawn, const Projection& projection, const Work& work) const {
         const bool searches = projection.max_triangles > 0;
         const auto options = isosurface_options(searches || executor_.concurrency() == 1);
         if (prerolls().field().dimension() == 3) {
-            return take(drawn, request_.upper ? isoband<3>(prerolls(), isovalue, *request_.upper,
-                                                           projection, options, work)
-                                              : nestgrid::isosurface<3>(prerolls(), isovalue,
-                                                                        projection, options, work));
+            return take(drawn, level_set<3>(projection, options, work));
         }
-        auto lines =
-            request_.upper
-                ? isoband<2>(prerolls(), isovalue, *request_.upper, projection, options, work)
-                : nestgrid::isosurface<2>(prerolls(), isovalue, projection, options, work);
+        auto lines = level_set<2>(projection, options, work);
         take_facts(drawn, lines);
         drawn.segments = std::move(lines.surface);
         drawn.result = {lines, {}, lines.counts};
@@ -173,13 +177,15 @@ private:
     }
     nestgrid::TriangleBudget find_both(const nestgrid::SliceRequest& both,
                                        std::uint64_t max_triangles, const Work& work) const {
+        const auto count = [&](const Projection& at, std::uint64_t most) {
+            return count_triangles(prerolls(), both, at, most, {}, {work.executor});
+        };
         if (const std::shared_ptr<const nestgrid::HighOrder> data = moment_.high_order()) {
+            Projection within{.indicator = "error", .lens = request_.lens};
             return nestgrid::least_threshold(
                 [&](double error, std::uint64_t most) {
-                    return count_triangles(
-                        prerolls(), both,
-                        {.threshold = error, .indicator = "error", .lens = request_.lens}, most, {},
-                        {work.executor});
+                    within.threshold = error;
+                    return count(within, most);
                 },
                 nestgrid::default_error(*data), max_triangles, data->least_tolerance());
         }
@@ -187,8 +193,7 @@ private:
         const nestgrid::Bounds& bounds = criteria.bounds();
         return nestgrid::least_threshold(
             [&](double threshold, std::uint64_t most) {
-                return count_triangles(prerolls(), both, under(criteria.at(threshold), bounds),
-                                       most, {}, {work.executor});
+                return count(under(criteria.at(threshold), bounds), most);
             },
             bounds.greatest() - bounds.least(), max_triangles);
     }

@@ -39,7 +39,7 @@ public:
     }
 
 private:
-    /// That of a cube, or a sum of such numbers with factors.
+    /// The number of a cube of cells, or a sum of such numbers with factors.
     struct Number {
         double value = std::numeric_limits<double>::quiet_NaN();
         double moment = 0;  ///< how much of half the Laplacian is in it

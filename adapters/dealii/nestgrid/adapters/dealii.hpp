@@ -10,7 +10,7 @@
 // Kept beside the triangulation: one bit per vertex, whether it hangs; it follows every refinement,
 // looked for by deal.II's own threads (dealii::MultithreadInfo).
 //
-// Of parallel::distributed and parallel::shared triangulations the grid says by `presence` which
+// A grid of a parallel::distributed or parallel::shared triangulation tells by `presence` which
 // leaves this process owns, one byte a cell, and distributed.hpp reaches the others. Numbers of
 // vertices differ between processes, so the library derives the keys of nodes, and which of them
 // hang. Such a grid does not follow refinements: it must be made anew.

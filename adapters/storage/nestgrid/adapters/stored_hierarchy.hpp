@@ -22,7 +22,7 @@ struct NamedField {
     std::vector<CompressedValues<double>> encoded{};
 };
 
-/// What a .nestgrid file held.
+/// The grid of a .nestgrid file, its fields and the times of its frames.
 template <class Family>
 struct StoredHierarchy {
     StoredGrid<Family> grid;
@@ -35,7 +35,7 @@ struct StoredHierarchy {
     }
 };
 
-/// What a .nestgrid file holds beside the grid.
+/// Options of writing a .nestgrid file: times of the frames, and how values are encoded.
 struct StoredFileOptions {
     std::vector<double> times{0};  ///< of the frames, finite and ascending
     /// How values are encoded; nothing: as they are. Nodes that hang lose their values, and have
@@ -43,7 +43,7 @@ struct StoredFileOptions {
     std::optional<CompressionOptions> compression{};
 };
 
-/// What reading makes of encoded values.
+/// Whether encoded values are decoded when a file is read, or kept as they are.
 enum class Encoded { decode, keep };
 
 namespace detail {
