@@ -1,30 +1,25 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nestgrid/algorithms/collapse_budget.hpp>
+#include <collapses/collapse_budget.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include <distances/box_tree.hpp>
 #include <drawing/bfloat16_search.hpp>
 #include <level_sets/draw.hpp>
-#include <nestgrid/algorithms/isosurface_within.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/error.hpp>
 #include <projection/by_criterion.hpp>
 #include <walk/frontier.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid::engine {
 
 namespace {
-
-using engine::octave;
 
 constexpr int guesses = 6;         // trials, before intervals are halved and steps doubled
 constexpr double aim = 0.95;       // part of the number that a trial is to have
@@ -111,10 +106,12 @@ public:
     }
 
 private:
-    static int code_of(double amount) { return bfloat16_above(float_above(amount)); }
+    static int code_of(double amount) {
+        return detail::bfloat16_above(detail::float_above(amount));
+    }
 
     void attempt(int code) {
-        const double amount = bfloat16_value(static_cast<std::uint16_t>(code));
+        const double amount = detail::bfloat16_value(static_cast<std::uint16_t>(code));
         const std::uint64_t triangles = collapse_(amount, best_.extracted);
         ++best_.trials;
         if (triangles <= best_.max_triangles) {
@@ -140,7 +137,7 @@ TriangleBudget found_by(AmountSearch& search, const Run& run) {
     try {
         run();
         return search.best(false);
-    } catch (const engine::Cancelled&) {
+    } catch (const Cancelled&) {
         return search.best(true);
     }
 }
@@ -151,9 +148,9 @@ IsosurfaceOptions of_trials(IsosurfaceOptions options) {
     return options;
 }
 
-/// \throw engine::Cancelled where progress has ended the drawing
+/// \throw Cancelled where progress has ended the drawing
 Surface<3>& complete(Isosurface<3>& drawn) {
-    if (drawn.cancelled) throw engine::Cancelled{};
+    if (drawn.cancelled) throw Cancelled{};
     return drawn.surface;
 }
 
@@ -181,47 +178,44 @@ double first_distance(const Surface<3>& whole, std::uint64_t max_triangles) {
 
 template <class Real>
 TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isovalue,
-                                   const MakeCriterion& criterion_at, const SearchBounds& bounds,
+                                   const CriterionAt& criterion_at, const Bounds& bounds,
                                    std::uint64_t max_triangles, const IsosurfaceOptions& options,
                                    const Executor& executor) {
     hierarchy.facts().require_one_process("a number of triangles after collapses");
     const IsosurfaceOptions of_trial = of_trials(options);
     const auto collapse_within = [&](double error, std::uint64_t& triangles) {
-        Isosurface<3> result =
-            engine::isosurface<3>(hierarchy, isovalue, *criterion_at(collapse_start * error),
-                                  bounds.bounds, of_trial, executor);
+        Isosurface<3> result = isosurface<3>(
+            hierarchy, isovalue, criterion_at(collapse_start * error), bounds, of_trial, executor);
         Surface<3>& surface = complete(result);
         triangles += surface.simplices.size();
-        collapse(surface, hierarchy, isovalue, bounds.bounds, {.error = error}, executor);
+        collapse(surface, hierarchy, isovalue, bounds, {.error = error}, executor);
         return surface.simplices.size();
     };
     AmountSearch search(collapse_within, max_triangles);
     return found_by(search, [&] {
-        const auto levels =
-            engine::isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
+        const auto levels = isosurface_levels(hierarchy, std::span<const double>(&isovalue, 1));
         const auto drawn = [&](double threshold, std::uint64_t most) {
-            return engine::count_simplices<3>(levels, *criterion_at(threshold), bounds.bounds, most,
-                                              of_trial, executor);
+            return count_simplices<3>(levels, criterion_at(threshold), bounds, most, of_trial,
+                                      executor);
         };
         const std::uint64_t all = drawn(0, std::numeric_limits<std::uint64_t>::max()).value();
-        const auto first = [&] { return first_error(drawn, bounds.range, all, max_triangles); };
-        const double greatest = greatest_error(bounds.range);
+        const double range = bounds.greatest() - bounds.least();
+        const auto first = [&] { return first_error(drawn, range, all, max_triangles); };
+        const double greatest = greatest_error(range);
         search.run(all, first, std::ldexp(greatest, -octaves_tried), greatest);
     });
 }
 
 template <class Real>
 TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double isovalue,
-                                      const Surface<3>& whole, const MakeAlsoFine& criterion_at,
+                                      const Surface<3>& whole, const CriterionAt& criterion_at,
                                       const Bounds& bounds, std::uint64_t max_triangles,
                                       const IsosurfaceOptions& options, const Executor& executor) {
     const IsosurfaceOptions of_trial = of_trials(options);
     const auto collapse_within = [&](double distance, std::uint64_t& triangles) {
         const double first = distance / 2;
-        Isosurface<3> result = isosurface_within(
-                                   hierarchy, isovalue, {whole, first},
-                                   [&](const Indicator& fine) { return criterion_at(first, fine); },
-                                   bounds, of_trial, executor)
+        Isosurface<3> result = isosurface_within(hierarchy, isovalue, {whole, first},
+                                                 criterion_at(first), bounds, of_trial, executor)
                                    .isosurface;
         Surface<3>& surface = complete(result);
         triangles += surface.simplices.size();
@@ -234,32 +228,15 @@ TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double i
         const double first = first_distance(whole, max_triangles);
         search.run(
             whole.simplices.size(), [&] { return first; }, first / 4,
-            engine::Box::around(whole.vertices).diameter());
+            Box::around(whole.vertices).diameter());
     });
 }
-
-template TriangleBudget find_collapse_error(const Hierarchy<float>&, double, const MakeCriterion&,
-                                            const SearchBounds&, std::uint64_t,
-                                            const IsosurfaceOptions&, const Executor&);
-template TriangleBudget find_collapse_error(const Hierarchy<double>&, double, const MakeCriterion&,
-                                            const SearchBounds&, std::uint64_t,
-                                            const IsosurfaceOptions&, const Executor&);
-template TriangleBudget find_collapse_distance(const Hierarchy<float>&, double, const Surface<3>&,
-                                               const MakeAlsoFine&, const Bounds&, std::uint64_t,
-                                               const IsosurfaceOptions&, const Executor&);
-template TriangleBudget find_collapse_distance(const Hierarchy<double>&, double, const Surface<3>&,
-                                               const MakeAlsoFine&, const Bounds&, std::uint64_t,
-                                               const IsosurfaceOptions&, const Executor&);
-
-}  // namespace nestgrid::detail
-
-namespace nestgrid {
 
 TriangleBudget find_collapse_error(const TryCollapse& within, double range,
                                    std::uint64_t max_triangles) {
     const auto attempt = [&](double error) {
         const std::optional<CollapseTrial> trial = within(error);
-        if (!trial) throw engine::Cancelled{};
+        if (!trial) throw Cancelled{};
         return *trial;
     };
     const auto collapse_within = [&](double error, std::uint64_t& triangles) {
@@ -267,13 +244,24 @@ TriangleBudget find_collapse_error(const TryCollapse& within, double range,
         triangles += trial.drawn;
         return trial.left;
     };
-    detail::AmountSearch search(collapse_within, max_triangles);
-    return detail::found_by(search, [&] {
-        const double greatest = detail::greatest_error(range);
+    AmountSearch search(collapse_within, max_triangles);
+    return found_by(search, [&] {
+        const double greatest = greatest_error(range);
         search.run(
-            attempt(0).left, [&] { return std::ldexp(greatest, -detail::octaves_begun); },
-            std::ldexp(greatest, -detail::octaves_tried), greatest);
+            attempt(0).left, [&] { return std::ldexp(greatest, -octaves_begun); },
+            std::ldexp(greatest, -octaves_tried), greatest);
     });
 }
 
-}  // namespace nestgrid
+#define NESTGRID_INSTANTIATE(Real)                                                                \
+    template TriangleBudget find_collapse_error(const Hierarchy<Real>&, double,                   \
+                                                const CriterionAt&, const Bounds&, std::uint64_t, \
+                                                const IsosurfaceOptions&, const Executor&);       \
+    template TriangleBudget find_collapse_distance(                                               \
+        const Hierarchy<Real>&, double, const Surface<3>&, const CriterionAt&, const Bounds&,     \
+        std::uint64_t, const IsosurfaceOptions&, const Executor&);
+NESTGRID_INSTANTIATE(float)
+NESTGRID_INSTANTIATE(double)
+#undef NESTGRID_INSTANTIATE
+
+}  // namespace nestgrid::engine

@@ -5,8 +5,8 @@
 #include <deque>
 
 #include <discontinuous/corner_values.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/algorithms/element_deviations.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 #include <projection/made_for_ranks.hpp>
@@ -169,7 +169,7 @@ private:
         descend(at, rows, depth);
         if (!counts) return;
         ElementDeviations::Entry& own = entries_[entry];
-        own.deviation = std::max(own.deviation, float_above(greatest_.back()));
+        own.deviation = std::max(own.deviation, detail::float_above(greatest_.back()));
         greatest_.pop_back();
     }
     static void interpolate(const Rule& rule, std::size_t corners, Row& row) {

@@ -13,7 +13,7 @@
 #include <nestgrid/error.hpp>
 #include <projection/by_criterion.hpp>
 
-namespace nestgrid::detail {
+namespace nestgrid {
 
 namespace {
 
@@ -82,7 +82,7 @@ SweptIndicator fine_indicator(const Hierarchy<Real>& hierarchy, const FinePoints
 
 template <class Real>
 IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isovalue,
-                                   const Nearness& nearness, const AlsoFine& criterion,
+                                   const Nearness& nearness, const AnyCriterion& criterion,
                                    const Bounds& bounds, const IsosurfaceOptions& options,
                                    const Executor& executor) {
     const Surface<3>& whole = nearness.whole;
@@ -102,8 +102,8 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
                                         ? fine_indicator(hierarchy, points, options.progress)
                                         : SweptIndicator({}, {}, hierarchy.epoch());
         const auto draw = [&](const IsosurfaceOptions& how) {
-            return engine::isosurface<3>(hierarchy, isovalue, *criterion(fine), bounds, how,
-                                         executor);
+            return engine::isosurface<3>(hierarchy, isovalue, criterion && Threshold(&fine, 0.5),
+                                         bounds, how, executor);
         };
         const Isosurface<3> drawn = draw(searched);
         if (drawn.cancelled) throw Cancelled{};
@@ -137,10 +137,11 @@ IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isov
 }
 
 template IsosurfaceWithin isosurface_within<float>(const Hierarchy<float>&, double, const Nearness&,
-                                                   const AlsoFine&, const Bounds&,
+                                                   const AnyCriterion&, const Bounds&,
                                                    const IsosurfaceOptions&, const Executor&);
 template IsosurfaceWithin isosurface_within<double>(const Hierarchy<double>&, double,
-                                                    const Nearness&, const AlsoFine&, const Bounds&,
-                                                    const IsosurfaceOptions&, const Executor&);
+                                                    const Nearness&, const AnyCriterion&,
+                                                    const Bounds&, const IsosurfaceOptions&,
+                                                    const Executor&);
 
-}  // namespace nestgrid::detail
+}  // namespace nestgrid

@@ -8,7 +8,7 @@
 #include <string>
 
 #include <drawing/bfloat16_search.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/error.hpp>
 #include <walk/frontier.hpp>
 
@@ -21,7 +21,7 @@ using engine::octave;
 
 /// The code of the greatest finite threshold. Nodes outside of the domain have the indicator
 /// infinity, and no element may stop at them.
-constexpr std::uint16_t greatest_code = bfloat16_infinity - 1;
+constexpr std::uint16_t greatest_code = detail::bfloat16_infinity - 1;
 
 std::string short_number(double x) {
     std::ostringstream text;
@@ -42,14 +42,14 @@ public:
     Trials(const CountTriangles& count, std::uint64_t max_triangles, std::uint16_t least)
         : count_{count}, max_triangles_{max_triangles}, least_{least} {
         best_.max_triangles = max_triangles;
-        best_.least = bfloat16_value(least);
+        best_.least = detail::bfloat16_value(least);
     }
 
     const TriangleBudget& best() const { return best_; }
     bool any_fits() const { return any_fits_; }
 
     bool fits(std::uint16_t code) {
-        const double threshold = bfloat16_value(code);
+        const double threshold = detail::bfloat16_value(code);
         const auto triangles = count_(threshold, max_triangles_);
         ++best_.trials;
         best_.extracted += triangles.value_or(max_triangles_ + 1);
@@ -90,15 +90,15 @@ public:
     /// Counts the triangles at the next lesser threshold, where the budget is far from filled.
     void look_beyond(std::uint16_t code) {
         if (best_.end() != BudgetEnd::step) return;
-        best_.next_threshold = bfloat16_value(code);
+        best_.next_threshold = detail::bfloat16_value(code);
         best_.next_triangles =
             count_(best_.next_threshold, most_beyond * max_triangles_).value_or(0);
     }
 
 private:
     [[noreturn]] void throw_too_few() const {
-        const auto triangles =
-            count_(bfloat16_value(greatest_code), std::numeric_limits<std::uint64_t>::max());
+        const auto triangles = count_(detail::bfloat16_value(greatest_code),
+                                      std::numeric_limits<std::uint64_t>::max());
         throw InvalidInput("even the coarsest surface has more than " +
                            std::to_string(max_triangles_) +
                            " triangles: " + std::to_string(triangles.value()));
@@ -112,7 +112,8 @@ private:
 };
 
 std::uint16_t code_above(double threshold) {
-    return std::min(bfloat16_above(float_above(std::max(threshold, 0.0))), greatest_code);
+    return std::min(detail::bfloat16_above(detail::float_above(std::max(threshold, 0.0))),
+                    greatest_code);
 }
 
 void search(Trials& trials, double start, std::uint16_t least) {
@@ -167,7 +168,7 @@ TriangleBudget least_threshold(const CountTriangles& count, double start,
     } catch (const engine::Cancelled&) {
         TriangleBudget best = trials.best();
         best.cancelled = true;
-        if (!trials.any_fits()) best.threshold = bfloat16_value(greatest_code);
+        if (!trials.any_fits()) best.threshold = detail::bfloat16_value(greatest_code);
         return best;
     }
 }

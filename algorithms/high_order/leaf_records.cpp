@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid::engine {
@@ -117,7 +117,7 @@ void LeafRecords::add_leaf(Task* task, std::span<const BaseElement> way,
         nets_.resize(at + leaf.size());
         const double* const own = nets_.data() + at;
         const double off = put_triangle_nets(own, degree, nets_.data() + at + points.size());
-        if (c == 0) leaf.jump = float_above(off);
+        if (c == 0) leaf.jump = detail::float_above(off);
     }
     const auto [lo, hi] =
         std::minmax_element(net(leaf), net(leaf) + static_cast<std::ptrdiff_t>(points.size()));
@@ -296,7 +296,7 @@ std::uint32_t LeafRecords::in_owner(const OnRecord& part, std::array<Place, 4>& 
 }
 
 void LeafRecords::raise_jump(std::size_t leaf, double jump) {
-    leaves_[leaf].jump = std::max(leaves_[leaf].jump, float_above(jump));
+    leaves_[leaf].jump = std::max(leaves_[leaf].jump, detail::float_above(jump));
 }
 
 double LeafRecords::jump() const {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 
 namespace nestgrid::engine {
@@ -24,7 +24,9 @@ double diameter_of(std::span<const Point> corners) {
     return diameter;
 }
 
-void raise(float& number, double to) { number = std::max(number, float_above(to * rounding)); }
+void raise(float& number, double to) {
+    number = std::max(number, detail::float_above(to * rounding));
+}
 
 }  // namespace
 
@@ -197,7 +199,7 @@ private:
             if (done_[number]) continue;
             done_[number] = true;
             RealNode& made = node(number);
-            made.bound = float_above(
+            made.bound = detail::float_above(
                 (static_cast<double>(made.bound) + static_cast<double>(made.off)) * rounding);
         }
     }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/detail/interpolate.hpp>
 #include <nestgrid/error.hpp>
 
@@ -252,9 +252,9 @@ void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, con
     const auto corners = std::span<const double>(sorted).first(shape.corners);
     const double error = drawn_error(e, own, looked.facts.beta, corners);
     const double allowed = tolerance_ + static_cast<double>(leaf.jump);
-    const bool exceeds = static_cast<double>(float_above(error)) > allowed;
+    const bool exceeds = static_cast<double>(detail::float_above(error)) > allowed;
     if (looked.all_flat && (!exceeds || e.level >= depth_)) {
-        inner.error = float_above(error);
+        inner.error = detail::float_above(error);
         inner.limited = exceeds;
         return;
     }
@@ -262,7 +262,7 @@ void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, con
     member.constrained = looked.flat;
     member.outside = shape.rule->all();
     const auto [lo, hi] = std::minmax_element(corners.begin(), corners.end());
-    inner.beyond = float_above(
+    inner.beyond = detail::float_above(
         std::max({0.0, looked.facts.greatest - *hi, *lo - looked.facts.least}) + least_beyond_);
 }
 

@@ -10,7 +10,7 @@
 
 namespace nestgrid {
 
-double blend_weight(double eta, double epsilon, double factor) {
+double detail::blend_weight(double eta, double epsilon, double factor) {
     // A little less than factor * epsilon, which covers the rounding of sums (KeyFrames).
     const double end = factor * (1 - 0x1p-40) * epsilon;
     if (eta <= epsilon) return 1;

@@ -159,10 +159,11 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
         table.dense = lattice_cuts(hierarchy, request, executor);
     } else {
         const bool measures = spread.slope > 0 && !in_rows;
-        const Needs needs{.values = true,
-                          .keys = true,
-                          .positions = measures || request.distances || !cuts_are_errors(facts),
-                          .on_ranks = true};
+        const Needs needs{
+            .values = true,
+            .keys = true,
+            .positions = measures || request.distances || !detail::cuts_are_errors(facts),
+            .on_ranks = true};
         CutEtas etas(facts.node_count);
         together(facts.shared, "deviations of cuts", [&] {
             walk_cuts(Walk<Real>(hierarchy, needs, request.bounds->hanging()),
@@ -178,7 +179,7 @@ SweptIndicator measure_cuts(const Hierarchy<Real>& hierarchy, const CutRequest& 
 
 }  // namespace engine
 
-bool cuts_are_errors(const HierarchyFacts& facts) {
+bool detail::cuts_are_errors(const HierarchyFacts& facts) {
     return facts.only_shape == Shape::tetrahedron || facts.only_shape == Shape::triangle;
 }
 

@@ -24,7 +24,7 @@ public:
     void raise(std::size_t node, double eta) {
         if (!(eta >= 0)) refuse(eta);
         std::uint16_t& at = maxima_[node];
-        at = std::max(at, bfloat16_above(float_above(eta)));
+        at = std::max(at, detail::bfloat16_above(detail::float_above(eta)));
     }
     /// Sets eta to infinity at the new nodes of a split at which no element may stop.
     /// \param outside these, one bit each
@@ -33,7 +33,7 @@ public:
         const auto corners = static_cast<std::size_t>(rule.corner_count());
         for (NodeMask left = outside & rule.all(); left != 0; left &= left - 1) {
             maxima_[nodes[corners + static_cast<std::size_t>(std::countr_zero(left))]] =
-                bfloat16_infinity;
+                detail::bfloat16_infinity;
         }
     }
     NodeMaxima<std::uint16_t>& maxima() { return maxima_; }

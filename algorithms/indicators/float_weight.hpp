@@ -12,7 +12,7 @@ namespace nestgrid::engine {
 inline float float_weight(double eta, double epsilon, double factor) {
     constexpr float below_one = 1 - 0x1p-24F;  // the greatest float below 1
     if (eta <= epsilon) return 1;
-    return std::min(static_cast<float>(blend_weight(eta, epsilon, factor)), below_one);
+    return std::min(static_cast<float>(detail::blend_weight(eta, epsilon, factor)), below_one);
 }
 
 }  // namespace nestgrid::engine

@@ -45,7 +45,7 @@ public:
         }
         for (std::size_t n = 0; n < made.size(); ++n) {
             float& offset = nodes_[made[n]].offset;
-            offset = std::max(offset, float_above(distance_to_mean(split, n)));
+            offset = std::max(offset, detail::float_above(distance_to_mean(split, n)));
         }
     }
     void finish(engine::NodeEtas& etas) override {
@@ -63,7 +63,7 @@ public:
                           return engine::raise_parents(rule, of, of_node, hand, raise, greatest);
                       });
         for (std::size_t node = 0; node < nodes_.size(); ++node) {
-            etas.raise(node, bfloat16_value(nodes_[node].bound()));
+            etas.raise(node, detail::bfloat16_value(nodes_[node].bound()));
         }
     }
 
@@ -73,7 +73,7 @@ private:
         std::uint16_t finer = 0;  // the greatest bound of finer nodes
 
         std::uint16_t bound() const {
-            return bfloat16_above(sum_above(offset, bfloat16_value(finer)));
+            return detail::bfloat16_above(detail::sum_above(offset, detail::bfloat16_value(finer)));
         }
     };
     std::vector<Node> nodes_;

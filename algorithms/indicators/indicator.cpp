@@ -167,7 +167,7 @@ void HierarchicalIndicator::prepare(const Hierarchy<Real>& hierarchy, const Leaf
                      [&] { engine::with_places(hierarchy, walk_all); });
     if (!sweeps) return;
     sweeps->saturate(shared);
-    facts_.least_stop = bfloat16_value(sweeps->least_stop());
+    facts_.least_stop = detail::bfloat16_value(sweeps->least_stop());
     // No element above a crossing node stops, whatever its level.
     facts_.one_level_a_node = sweeps->one_level_a_node() && hanging_.crossing() == nullptr;
     if (shared != nullptr) agree(facts_, shared->ranks());

@@ -98,7 +98,7 @@ void IndicatorKind::require(const HierarchyFacts& facts) const {
                        std::string(needed_grids) + ": on this one it is 0 everywhere");
 }
 
-const char* unit_name(ThresholdUnit unit) {
+const char* detail::unit_name(ThresholdUnit unit) {
     switch (unit) {
         case ThresholdUnit::data:
             return "data";
@@ -116,14 +116,15 @@ const IndicatorKind& indicator_named(std::string_view name) {
     const auto found = std::find_if(all.begin(), all.end(),
                                     [&](const IndicatorKind& kind) { return kind.name == name; });
     if (found != all.end()) return *found;
-    throw InvalidInput("the indicator '" + std::string(name) + "' is none of " + indicator_names());
+    throw InvalidInput("the indicator '" + std::string(name) + "' is none of " +
+                       detail::indicator_names());
 }
 
 const IndicatorKind& error_indicator(const HierarchyFacts& facts, bool between_frames) {
-    return indicator_named(between_frames || !cuts_are_errors(facts) ? "deviation" : "cut");
+    return indicator_named(between_frames || !detail::cuts_are_errors(facts) ? "deviation" : "cut");
 }
 
-std::string indicator_names() {
+std::string detail::indicator_names() {
     std::string text;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (i > 0) text += i + 1 == all.size() ? " and " : ", ";

@@ -18,8 +18,8 @@
 #include <span>
 #include <vector>
 
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/algorithms/executor.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/hierarchy.hpp>
 
 namespace nestgrid::engine {
@@ -54,7 +54,7 @@ using RaisedNumbers = std::vector<std::atomic<std::uint16_t>>;
 
 /// Raises the number of a node to one that is not below the given one.
 inline void raise(RaisedNumbers& numbers, NodeKey node, double to) {
-    const std::uint16_t least = bfloat16_above(float_above(to));
+    const std::uint16_t least = detail::bfloat16_above(detail::float_above(to));
     std::atomic<std::uint16_t>& number = numbers[static_cast<std::size_t>(node)];
     std::uint16_t now = number.load(std::memory_order_relaxed);
     while (now < least && !number.compare_exchange_weak(now, least, std::memory_order_relaxed)) {

@@ -32,7 +32,8 @@ SweptIndicator sweep_diameters_of_rows(const Hierarchy<Real>& hierarchy, const S
     std::vector<std::uint16_t> sizes(hierarchy.facts().node_count, 0);
     hierarchy.star_rows([&](const StarRow& row) {
         if (row.gathers) return;
-        const std::uint16_t size = bfloat16_above(float_above(kinds.diameter(row.parents)));
+        const std::uint16_t size =
+            detail::bfloat16_above(detail::float_above(kinds.diameter(row.parents)));
         for (std::size_t i = 0; i < row.count; ++i) sizes[row.first + i * row.stride] = size;
     });
     engine::sweep_rows(hierarchy, spread, sizes);

@@ -143,7 +143,7 @@ public:
         const Rule& rule = split.rule;
         const auto made = nodes.subspan(split.corner_count());
         const std::vector<std::vector<Slope>>& slopes = slopes_of(rule);
-        const float diameter = float_above(split.diameter());
+        const float diameter = detail::float_above(split.diameter());
         const auto add = [&](std::size_t n, const std::array<float, 3>& gradient) {
             if (made[n] >= jumps_.size()) jumps_.resize(made[n] + 1);
             Jump& jump = jumps_[made[n]];

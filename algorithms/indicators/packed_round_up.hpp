@@ -5,14 +5,14 @@
 // function of the same name in round_up.hpp.
 #pragma once
 
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/detail/pack.hpp>
 
 namespace nestgrid::engine {
 
-using nestgrid::bfloat16_above;
-using nestgrid::distance_above;
-using nestgrid::sum_above;
+using nestgrid::detail::bfloat16_above;
+using nestgrid::detail::distance_above;
+using nestgrid::detail::sum_above;
 
 /// The next floats above x where the error is positive, else x. Requires x >= 0.
 template <std::size_t size>

@@ -27,8 +27,8 @@ public:
     void deviation(const Deviation& d) {
         items_.push_back({nullptr, deviation_level, 0, 0, d.made.size()});
         keys_.insert(keys_.end(), d.made.begin(), d.made.end());
-        numbers_.push_back(float_above(d.deviation));
-        numbers_.push_back(float_above(d.stop));
+        numbers_.push_back(detail::float_above(d.deviation));
+        numbers_.push_back(detail::float_above(d.stop));
     }
 
     /// \param sweeps has the three functions above

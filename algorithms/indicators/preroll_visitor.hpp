@@ -122,7 +122,7 @@ private:
             throw InvalidInput("the error of a leaf is not a usable number: " +
                                std::to_string(error));
         }
-        return float_above(error);
+        return detail::float_above(error);
     }
 
     /// Compares the values of the field at hanging nodes, where it has any, with those that the

@@ -6,13 +6,13 @@
 
 #include <indicators/node_numbers.hpp>
 #include <indicators/split_ranges.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <walk/hanging_nodes.hpp>
 #include <walk/unusable_values.hpp>
 
 namespace nestgrid {
 
-bool are_split_bounds_worth_while(const HierarchyFacts& facts) {
+bool detail::are_split_bounds_worth_while(const HierarchyFacts& facts) {
     return !facts.knows_stars && !facts.knows_patches;
 }
 
@@ -36,7 +36,7 @@ void SplitBounds::prepare(const Hierarchy<Real>& hierarchy, const Executor& exec
         facts_ =
             engine::walk_ranges(walk, executor, [&](const engine::SplitName& name, float beyond) {
                 std::uint16_t& kept = place_of(name.key, name.is_node);
-                kept = std::max(kept, bfloat16_above(beyond));
+                kept = std::max(kept, detail::bfloat16_above(beyond));
             });
     });
 }
@@ -50,10 +50,10 @@ std::uint16_t& SplitBounds::place_of(NodeKey name, bool is_node) {
 double SplitBounds::bound(const Rule& rule, std::span<const NodeKey> nodes) const {
     const engine::SplitName name = engine::name_of_split(rule, nodes);
     if (dense_ != nullptr && name.is_node) {
-        return bfloat16_value(dense_[static_cast<std::size_t>(name.key)]);
+        return detail::bfloat16_value(dense_[static_cast<std::size_t>(name.key)]);
     }
     const std::uint16_t* const kept = sparse_.find(name.key);
-    return bfloat16_value(kept == nullptr ? bfloat16_infinity : *kept);
+    return detail::bfloat16_value(kept == nullptr ? detail::bfloat16_infinity : *kept);
 }
 
 std::size_t SplitBounds::memory_bytes() const {

@@ -106,7 +106,7 @@ private:
             greatest = std::max(greatest, of_element);
             for (std::size_t k = 0; k < corners; ++k) {
                 const float distance = rule.inside == no_new_node
-                                           ? float_above(norm(x[corners + n] - x[k]))
+                                           ? detail::float_above(norm(x[corners + n] - x[k]))
                                            : reach_of(rule, x);
                 float& reach = reach_[key_offset(keys[k], made)];
                 reach = std::max(reach, distance);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <walk/frontier.hpp>
 
 namespace nestgrid::engine {
@@ -40,8 +40,8 @@ struct RangedSplit {
 
     void tell(const TakeRange& take) const {
         take(name_of_split(*rule, keys),
-             float_above(std::max(distance_above(all.greatest, corners.greatest),
-                                  distance_above(corners.least, all.least))));
+             detail::float_above(std::max(detail::distance_above(all.greatest, corners.greatest),
+                                          detail::distance_above(corners.least, all.least))));
     }
 };
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include <nestgrid/algorithms/criterion.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid::engine {
@@ -36,14 +36,14 @@ inline float reach_of(const Rule& rule, std::span<const Point> x) {
             greatest = std::max(greatest, norm(made - parent));
         }
     }
-    return float_above(greatest);
+    return detail::float_above(greatest);
 }
 
 /// factor * (stop + slope * reach), rounded up.
 inline std::uint16_t hand_on(const Spread& spread, std::uint16_t stop, float reach) {
     if (spread.factor == 1 && spread.slope == 0) return stop;
-    const double to = static_cast<double>(bfloat16_value(stop)) + spread.slope * reach;
-    return bfloat16_above(float_above(spread.factor * to));
+    const double to = static_cast<double>(detail::bfloat16_value(stop)) + spread.slope * reach;
+    return detail::bfloat16_above(detail::float_above(spread.factor * to));
 }
 
 }  // namespace nestgrid::engine

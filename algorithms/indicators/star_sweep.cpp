@@ -43,7 +43,7 @@ private:
                 }
                 eta = std::max(eta, hand_on(spread_, greatest, group.reach));
             }
-            (*etas_)[node] = i + row.outside < row.count ? eta : bfloat16_infinity;
+            (*etas_)[node] = i + row.outside < row.count ? eta : detail::bfloat16_infinity;
         }
     }
     void gather(const StarRow& row) {

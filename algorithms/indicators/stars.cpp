@@ -40,7 +40,7 @@ public:
     void add(const StarRow& row) {
         for (std::size_t i = 0; i < row.count; i += run_) make_run(row, i);
         for (std::size_t i = row.count - row.outside; i < row.count; ++i) {
-            entries_[row.first + i * row.stride].stop = bfloat16_infinity;
+            entries_[row.first + i * row.stride].stop = detail::bfloat16_infinity;
         }
     }
 

@@ -9,13 +9,13 @@ namespace nestgrid::engine {
 void Sweeps::leaf(std::span<const NodeKey> corners, float error) {
     for (const std::size_t at : numbers(corners)) {
         std::uint16_t& stop = nodes_[at].entry.stop;
-        stop = std::max(stop, bfloat16_above(error));
+        stop = std::max(stop, detail::bfloat16_above(error));
     }
 }
 
 void Sweeps::deviation(const Deviation& d) {
-    const Entry entry{bfloat16_above(float_above(d.stop)),
-                      bfloat16_above(float_above(d.deviation))};
+    const Entry entry{detail::bfloat16_above(detail::float_above(d.stop)),
+                      detail::bfloat16_above(detail::float_above(d.deviation))};
     for (const std::size_t at : numbers(d.made)) {
         Entry& of = nodes_[at].entry;
         of.stop = std::max(of.stop, entry.stop);
@@ -30,7 +30,7 @@ void Sweeps::raise(NodeKey key, const Entry& known) {
 }
 
 void Sweeps::sweep_all() {
-    least_stop_ = bfloat16_infinity;
+    least_stop_ = detail::bfloat16_infinity;
     sweep(splits_, one_level_ && one_step_,
           [&](const Rule& rule, std::span<const std::size_t> of, float reach) {
               return sweep_split(rule, of, reach);

@@ -87,7 +87,7 @@ private:
 
         /// The recursive sum.
         std::uint16_t bound() const {
-            return bfloat16_above(sum_above(offset, bfloat16_value(finer)));
+            return detail::bfloat16_above(detail::sum_above(offset, detail::bfloat16_value(finer)));
         }
     };
 
@@ -114,7 +114,7 @@ private:
     SplitsByLevel splits_;
     Spread spread_;
     MadeOf made_of_;
-    std::uint16_t least_stop_ = bfloat16_infinity;
+    std::uint16_t least_stop_ = detail::bfloat16_infinity;
     bool one_level_ = true;  // each node was created on one level
     bool one_step_ = true;   // no new node is a parent of another one of its split
     std::array<std::size_t, max_corners + max_new_nodes> numbers_{};
@@ -135,9 +135,10 @@ NESTGRID_INLINE void Sweeps::split(const PrerollSplit& s, Offset&& offset) {
         // Every element that makes a node has the same parents for it, but for crossing nodes, at
         // which S does not hold.
         if (is_new || (s.outside >> n & 1U) != 0) node.offset = std::max(node.offset, offset(n));
-        const std::uint16_t own = (s.outside >> n & 1U) != 0        ? bfloat16_infinity
-                                  : made_of_ == MadeOf::leaf_errors ? std::uint16_t{0}
-                                                                    : bfloat16_above(node.offset);
+        const std::uint16_t own = (s.outside >> n & 1U) != 0 ? detail::bfloat16_infinity
+                                  : made_of_ == MadeOf::leaf_errors
+                                      ? std::uint16_t{0}
+                                      : detail::bfloat16_above(node.offset);
         node.entry.stop = std::max(node.entry.stop, own);
     }
     splits_.add(static_cast<std::size_t>(s.level), rule, number, s.reach);

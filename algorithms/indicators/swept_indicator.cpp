@@ -22,7 +22,7 @@ double MeasuredSplit::diameter() const {
 NodeMask SweptIndicator::stops_at_most(const Rule&, std::span<const NodeKey> nodes,
                                        double epsilon) const {
     if (!(epsilon >= 0)) return 0;
-    const std::uint16_t most = bfloat16_below(epsilon);
+    const std::uint16_t most = detail::bfloat16_below(epsilon);
     NodeMask mask = 0;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         mask |= NodeMask{stops_.at(nodes[i]) <= most} << i;
@@ -35,12 +35,12 @@ double SweptIndicator::surface_error(std::span<const double> isovalues, double e
         return std::ranges::find(isovalues_, isovalue) != isovalues_.end();
     });
     if (!known || !(epsilon >= 0)) return std::numeric_limits<double>::infinity();
-    const std::uint16_t most = bfloat16_below(epsilon);
+    const std::uint16_t most = detail::bfloat16_below(epsilon);
     std::uint16_t greatest = 0;
     stops_.for_each([&](std::uint16_t stop) {
         if (stop <= most) greatest = std::max(greatest, stop);
     });
-    return bfloat16_value(greatest);
+    return detail::bfloat16_value(greatest);
 }
 
 namespace {

@@ -4,30 +4,24 @@
 #include <nestgrid/error.hpp>
 #include <ranks/agreement.hpp>
 
-namespace nestgrid {
-
-namespace engine {
-
-using nestgrid::detail::MakeCriterion;
-using nestgrid::detail::SearchBounds;
+namespace nestgrid::engine {
 
 template <int dimension, class Real>
-TriangleBudget find_threshold(const Levels<Real>& levels, const MakeCriterion& criterion_at,
-                              const SearchBounds& bounds, std::uint64_t max_triangles,
+TriangleBudget find_threshold(const Levels<Real>& levels, const CriterionAt& criterion_at,
+                              const Bounds& bounds, std::uint64_t max_triangles,
                               const IsosurfaceOptions& options, const Executor& executor) {
     const auto count = [&](double threshold, std::uint64_t most) {
-        std::unique_ptr<const Criterion> criterion;
+        std::optional<AnyCriterion> criterion;
         together(levels.hierarchy->facts().shared, "a number of triangles",
                  [&] { criterion = criterion_at(threshold); });
-        return count_simplices<dimension>(levels, *criterion, bounds.bounds, most, options,
-                                          executor);
+        return count_simplices<dimension>(levels, *criterion, bounds, most, options, executor);
     };
-    return least_threshold(count, bounds.range, max_triangles);
+    return least_threshold(count, bounds.greatest() - bounds.least(), max_triangles);
 }
 
 template <int dimension, class Real>
 TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
-                              const MakeCriterion& criterion_at, const SearchBounds& bounds,
+                              const CriterionAt& criterion_at, const Bounds& bounds,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options,
                               const Executor& executor) {
     Levels<Real> levels{&hierarchy, {}};
@@ -43,48 +37,26 @@ Threshold criterion_for(const Levels<Real>& levels, const HierarchicalIndicator&
                         const Executor& executor) {
     together(levels.hierarchy->facts().shared, "isosurfaces", [&] { projection.check(); });
     if (projection.max_triangles == 0) return {&indicator, projection.least_threshold()};
-    const MakeCriterion everywhere = [&](double threshold) {
-        return std::make_unique<const Threshold>(&indicator, threshold);
-    };
+    const auto everywhere = [&](double threshold) { return Threshold(&indicator, threshold); };
     const TriangleBudget best = find_threshold<dimension>(
-        levels, everywhere, {indicator, indicator.greatest() - indicator.least()},
-        projection.max_triangles, options, executor);
+        levels, everywhere, indicator, projection.max_triangles, options, executor);
     return {&indicator, best.threshold};
 }
 
-}  // namespace engine
-
-namespace detail {
-
-template <int dimension, class Real>
-TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, double isovalue,
-                              const MakeCriterion& criterion_at, const SearchBounds& bounds,
-                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
-                              const Executor& executor) {
-    return engine::find_threshold<dimension>(hierarchy, std::span<const double>(&isovalue, 1),
-                                             criterion_at, bounds, max_triangles, options,
-                                             executor);
-}
-
-}  // namespace detail
-
 #define NESTGRID_INSTANTIATE(dimension, Real)                                                      \
-    template TriangleBudget engine::find_threshold<dimension>(                                     \
-        const engine::Levels<Real>&, const detail::MakeCriterion&, const detail::SearchBounds&,    \
+    template TriangleBudget find_threshold<dimension>(const Levels<Real>&, const CriterionAt&,     \
+                                                      const Bounds&, std::uint64_t,                \
+                                                      const IsosurfaceOptions&, const Executor&);  \
+    template TriangleBudget find_threshold<dimension>(                                             \
+        const Hierarchy<Real>&, std::span<const double>, const CriterionAt&, const Bounds&,        \
         std::uint64_t, const IsosurfaceOptions&, const Executor&);                                 \
-    template TriangleBudget engine::find_threshold<dimension>(                                     \
-        const Hierarchy<Real>&, std::span<const double>, const detail::MakeCriterion&,             \
-        const detail::SearchBounds&, std::uint64_t, const IsosurfaceOptions&, const Executor&);    \
-    template Threshold engine::criterion_for<dimension>(                                           \
-        const engine::Levels<Real>&, const HierarchicalIndicator&, const Projection&,              \
-        const IsosurfaceOptions&, const Executor&);                                                \
-    template TriangleBudget detail::find_threshold<dimension>(                                     \
-        const Hierarchy<Real>&, double, const detail::MakeCriterion&, const detail::SearchBounds&, \
-        std::uint64_t, const IsosurfaceOptions&, const Executor&);
+    template Threshold criterion_for<dimension>(const Levels<Real>&, const HierarchicalIndicator&, \
+                                                const Projection&, const IsosurfaceOptions&,       \
+                                                const Executor&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)
 NESTGRID_INSTANTIATE(3, float)
 NESTGRID_INSTANTIATE(3, double)
 #undef NESTGRID_INSTANTIATE
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -9,8 +9,8 @@
 #include <drawing/requirements.hpp>
 #include <level_sets/level_set.hpp>
 #include <nestgrid/algorithms/detail/surface_targets.hpp>
+#include <nestgrid/algorithms/least_threshold.hpp>
 #include <nestgrid/algorithms/projection.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <ranks/agreement.hpp>
 
 namespace nestgrid::engine {
@@ -66,21 +66,20 @@ std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const C
                                              const IsosurfaceOptions& options,
                                              const Executor& executor);
 
-/// The least threshold at which all levels keep within a number of triangles.
+/// The least threshold at which all levels keep within a number of triangles. Of slices, they are
+/// counted before vertices are merged at nodes: there are no more.
+/// \param bounds which know the range of the data: from there it is searched
 /// \throw InvalidInput where even the coarsest surface has more
 template <int dimension, class Real>
-TriangleBudget find_threshold(const Levels<Real>& levels,
-                              const nestgrid::detail::MakeCriterion& criterion_at,
-                              const nestgrid::detail::SearchBounds& bounds,
-                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
-                              const Executor& executor);
+TriangleBudget find_threshold(const Levels<Real>& levels, const CriterionAt& criterion_at,
+                              const Bounds& bounds, std::uint64_t max_triangles,
+                              const IsosurfaceOptions& options, const Executor& executor);
 
 /// The same for the isosurfaces of component 0, all together.
 /// \throw InvalidInput also where an isovalue is not a number, on all ranks alike
 template <int dimension, class Real>
 TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, std::span<const double> isovalues,
-                              const nestgrid::detail::MakeCriterion& criterion_at,
-                              const nestgrid::detail::SearchBounds& bounds,
+                              const CriterionAt& criterion_at, const Bounds& bounds,
                               std::uint64_t max_triangles, const IsosurfaceOptions& options,
                               const Executor& executor);
 

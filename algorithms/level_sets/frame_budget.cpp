@@ -7,7 +7,7 @@
 #include <string>
 
 #include <drawing/bfloat16_search.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {
@@ -83,9 +83,9 @@ void FrameBudget::drawn(double cost) {
 }
 
 double FrameBudget::settle(const std::function<bool(double)>& fits) {
-    const std::uint16_t last = bfloat16_above(float_above(greatest_));
+    const std::uint16_t last = detail::bfloat16_above(detail::float_above(greatest_));
     const auto value = [&](std::uint16_t code) {
-        return code < last ? static_cast<double>(bfloat16_value(code)) : greatest_;
+        return code < last ? static_cast<double>(detail::bfloat16_value(code)) : greatest_;
     };
     const auto code_fits = [&](std::uint16_t code) {
         const bool fit = fits(value(code));
@@ -93,8 +93,8 @@ double FrameBudget::settle(const std::function<bool(double)>& fits) {
         return fit;
     };
     kept_ = false;
-    const auto start = std::min(bfloat16_above(float_above(threshold())), last);
-    const std::uint16_t least = bfloat16_above(float_above(finest * greatest_));
+    const auto start = std::min(detail::bfloat16_above(detail::float_above(threshold())), last);
+    const std::uint16_t least = detail::bfloat16_above(detail::float_above(finest * greatest_));
     const Bracket bracket = code_fits(start) ? bracket_below(start, least, code_fits)
                                              : bracket_above(start, last, code_fits);
     const double found = value(engine::least_that_fits(bracket.beyond, bracket.within, code_fits));

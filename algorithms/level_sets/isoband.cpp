@@ -17,8 +17,7 @@ void append(Vector& to, const Vector& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-}  // namespace
-
+/// Appends a surface with its orientation reversed: triangles turned, normals to the other side.
 template <int dimension>
 void append_reversed(Surface<dimension>& to, const Surface<dimension>& from) {
     const auto first_vertex = static_cast<std::uint32_t>(to.vertices.size());
@@ -47,6 +46,8 @@ void append_reversed(Surface<dimension>& to, const Surface<dimension>& from) {
     }
 }
 
+}  // namespace
+
 void engine::require_band(double low, double high, const IsosurfaceOptions& options) {
     if (!(low < high)) throw InvalidInput("the lower isovalue is not below the upper one");
     if (options.cap) throw InvalidInput("a band between two isovalues cannot be capped");
@@ -67,8 +68,6 @@ Isosurface<dimension> engine::isoband(const Hierarchy<Real>& hierarchy, double l
     return std::move(band);
 }
 
-template void append_reversed(Surface<2>&, const Surface<2>&);
-template void append_reversed(Surface<3>&, const Surface<3>&);
 #define NESTGRID_INSTANTIATE(dimension, Real)                                    \
     template Isosurface<dimension> engine::isoband<dimension>(                   \
         const Hierarchy<Real>&, double, double, const Criterion&, const Bounds&, \

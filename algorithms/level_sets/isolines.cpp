@@ -18,8 +18,9 @@ Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> valu
     Isolines result;
     for (std::size_t i = 0; i < drawn.size(); ++i) {
         if (shared != nullptr) engine::join_lines(drawn[i].surface, drawn[i].names, *shared);
-        engine::together(shared, "isolines",
-                         [&] { append_polylines(result.lines, drawn[i].surface, values[i]); });
+        engine::together(shared, "isolines", [&] {
+            detail::append_polylines(result.lines, drawn[i].surface, values[i]);
+        });
         drawn[i].surface = {};  // its memory is needed for the lines
         result.counts.calls = drawn[i].counts.calls;
         result.counts.visited = drawn[i].counts.visited;

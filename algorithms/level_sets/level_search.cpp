@@ -27,10 +27,10 @@ LevelSearch<Real>::LevelSearch(const Walk<Real>& walk, std::span<const Level<Rea
     const Threshold* const threshold = criterion.as_threshold();
     if (threshold != nullptr && own_bounds_ != nullptr && threshold->indicator() == own_bounds_) {
         own_threshold_ = threshold;
-        packed_threshold_ = Pack<float>::all(float_below(threshold->epsilon()));
+        packed_threshold_ = Pack<float>::all(detail::float_below(threshold->epsilon()));
         looks_plainly_ = levels_.size() == 1 && components_ == 1 && functions_ == 0 &&
                          asks_for_masks_ && threshold->epsilon() >= 0;
-        if (looks_plainly_) most_ = bfloat16_below(threshold->epsilon());
+        if (looks_plainly_) most_ = detail::bfloat16_below(threshold->epsilon());
     }
 }
 

@@ -16,7 +16,7 @@ namespace nestgrid::engine {
 template <class Real>
 NESTGRID_INLINE Real as_real(double bound) {
     if constexpr (sizeof(Real) == sizeof(double)) return bound;
-    return float_above(bound);
+    return detail::float_above(bound);
 }
 
 /// Whether a level of a component may pass through an element on which the component is within
@@ -104,7 +104,7 @@ NESTGRID_INLINE auto LevelSearch<Real>::look_plainly(const View& view, const Spl
             low |= NodeMask{entry.stop <= most_} << i;
         }
     }
-    const Real bound = std::max(static_cast<Real>(bfloat16_value(greatest)),
+    const Real bound = std::max(static_cast<Real>(detail::bfloat16_value(greatest)),
                                 static_cast<Real>(view.inner_bounds().beyond));
     if (!(level.least_inside - range.hi <= bound && range.lo - level.greatest_outside <= bound)) {
         return {{Visit::skip, 0}, bound};

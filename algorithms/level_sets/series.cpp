@@ -27,7 +27,7 @@ public:
                                       const Executor& executor) override {
         const engine::SharedNodes* const shared = hierarchy_->facts().shared;
         engine::together(shared, "a series of isosurfaces", [&] {
-            if (projection.criterion || !projection.asks_for_offsets()) {
+            if (projection.has_criterion() || !projection.asks_for_offsets()) {
                 throw InvalidInput(
                     "a series draws offsets within a threshold or a number of triangles only");
             }

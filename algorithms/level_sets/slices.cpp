@@ -25,25 +25,16 @@ Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
     return slice(hierarchy, function, Exact{}, leaves, options, executor);
 }
 
-}  // namespace nestgrid::engine
-
-namespace nestgrid::detail {
-
 template <class Real>
-TriangleBudget find_slice_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
-                                    const MakeCriterion& criterion_at, const SearchBounds& bounds,
-                                    std::uint64_t max_triangles, const IsosurfaceOptions& options,
-                                    const Executor& executor) {
-    return engine::with_levels(
-        hierarchy, {{&function}}, options, [&](const engine::Levels<double>& levels) {
-            return engine::find_threshold<3>(levels, criterion_at, bounds, max_triangles, options,
-                                             executor);
-        });
+TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                              const CriterionAt& criterion_at, const Bounds& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                              const Executor& executor) {
+    hierarchy.facts().require_dimension(3);
+    return with_levels(hierarchy, {{&function}}, options, [&](const Levels<double>& levels) {
+        return find_threshold<3>(levels, criterion_at, bounds, max_triangles, options, executor);
+    });
 }
-
-}  // namespace nestgrid::detail
-
-namespace nestgrid::engine {
 
 template <class Real>
 std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
@@ -71,22 +62,12 @@ std::optional<std::uint64_t> count_triangles(const Hierarchy<Real>& hierarchy,
                          const Executor&);                                                       \
     template std::optional<std::uint64_t> count_triangles(                                       \
         const Hierarchy<Real>&, const SliceRequest&, const Criterion&, const Bounds&,            \
-        std::uint64_t, const IsosurfaceOptions&, const Executor&);
+        std::uint64_t, const IsosurfaceOptions&, const Executor&);                               \
+    template TriangleBudget find_threshold(const Hierarchy<Real>&, const LevelFunction&,         \
+                                           const CriterionAt&, const Bounds&, std::uint64_t,     \
+                                           const IsosurfaceOptions&, const Executor&);
 NESTGRID_INSTANTIATE(float)
 NESTGRID_INSTANTIATE(double)
 #undef NESTGRID_INSTANTIATE
 
 }  // namespace nestgrid::engine
-
-namespace nestgrid::detail {
-
-template TriangleBudget find_slice_threshold(const Hierarchy<float>&, const LevelFunction&,
-                                             const MakeCriterion&, const SearchBounds&,
-                                             std::uint64_t, const IsosurfaceOptions&,
-                                             const Executor&);
-template TriangleBudget find_slice_threshold(const Hierarchy<double>&, const LevelFunction&,
-                                             const MakeCriterion&, const SearchBounds&,
-                                             std::uint64_t, const IsosurfaceOptions&,
-                                             const Executor&);
-
-}  // namespace nestgrid::detail

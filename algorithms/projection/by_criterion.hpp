@@ -66,6 +66,14 @@ template <class Real>
 Slice slice(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
             const IsosurfaceOptions& options, const Executor& executor);
 
+/// The least threshold at which a slice has at most max_triangles, counted before vertices are
+/// merged at nodes.
+template <class Real>
+TriangleBudget find_threshold(const Hierarchy<Real>& hierarchy, const LevelFunction& function,
+                              const CriterionAt& criterion_at, const Bounds& bounds,
+                              std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                              const Executor& executor);
+
 /// The number of triangles of slices and isosurfaces, before vertices are merged at nodes, or
 /// nothing where there are more than `most`.
 ///

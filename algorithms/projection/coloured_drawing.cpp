@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <limits>
 
+#include <collapses/collapse_budget.hpp>
 #include <height_fields/triangulate.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
-#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/collapse_colours.hpp>
 #include <nestgrid/algorithms/count_triangles.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <projection/by_criterion.hpp>
 #include <projection/drawn_within.hpp>
 #include <walk/frontier.hpp>
@@ -44,15 +43,16 @@ auto draw_within(const Criteria& criteria, const Work& work, const Within& withi
     const Work silent{.executor = work.executor};
     const TriangleBudget search = engine::threshold_of(projection, work, [&] {
         if (!projection.collapse) return find();
-        const TryCollapse attempt = [&](double error) -> std::optional<CollapseTrial> {
-            CollapseTrial trial;
+        const engine::TryCollapse attempt =
+            [&](double error) -> std::optional<engine::CollapseTrial> {
+            engine::CollapseTrial trial;
             const auto drawn = within(error, trial.drawn, silent);
             if (drawn.cancelled) return std::nullopt;
             trial.left = drawn.surface.simplices.size();
             return trial;
         };
         const double range = criteria.bounds().greatest() - criteria.bounds().least();
-        return find_collapse_error(attempt, range, projection.max_triangles);
+        return engine::find_collapse_error(attempt, range, projection.max_triangles);
     });
     std::uint64_t begun = 0;
     auto drawn = within(search.threshold, begun, work);
@@ -94,8 +94,8 @@ Projected<Slice> draw_slice(const Hierarchy<Real>& hierarchy, const LevelFunctio
         return drawn;
     };
     return draw_within(criteria, work, within, [&] {
-        return find_threshold(hierarchy, function, engine::criteria_at(criteria), bounds,
-                              projection.max_triangles, options, executor);
+        return engine::find_threshold(hierarchy, function, engine::criteria_at(criteria), bounds,
+                                      projection.max_triangles, options, executor);
     });
 }
 
@@ -130,8 +130,11 @@ Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<
         return drawn;
     };
     return draw_within(criteria, work, within, [&] {
-        return find_shading_threshold(hierarchy, engine::criteria_at(criteria), bounds,
-                                      projection.max_triangles, options, executor);
+        const auto count = [&](double threshold, std::uint64_t most) {
+            return engine::count_triangles(hierarchy, criteria.at(threshold), bounds, most, options,
+                                           executor);
+        };
+        return least_threshold(count, bounds.greatest() - bounds.least(), projection.max_triangles);
     });
 }
 

@@ -12,7 +12,7 @@ Criteria::Criteria(const Prerolls& prerolls, Projection projection,
                    std::span<const double> isovalues, const Work& work)
     : projection_{std::move(projection)} {
     projection_.check();
-    if (projection_.criterion) {
+    if (projection_.has_criterion()) {
         chosen_.bounds = {std::shared_ptr<void>(), projection_.bounds};
         return;
     }
@@ -28,6 +28,7 @@ Criteria::Criteria(const Prerolls& prerolls, Projection projection,
 
 AnyCriterion Criteria::at(double threshold) const {
     if (projection_.criterion) return AnyCriterion(projection_.criterion);
+    if (projection_.criterion_at) return projection_.criterion_at(threshold);
     const Indicator* const indicator = chosen_.indicator.get();
     if (indicator == nullptr) {
         if (threshold == 0) return Exact{};

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/drawing.hpp>
 
+#include <collapses/collapse_budget.hpp>
 #include <level_sets/draw.hpp>
-#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/error.hpp>
 #include <projection/by_criterion.hpp>
 #include <projection/drawn_within.hpp>
@@ -37,16 +36,18 @@ public:
             };
             if (!projection.collapse) {
                 return search([&](const auto&... how) {
-                    return find_threshold<3>(hierarchy_, isovalue_, how...);
+                    return engine::find_threshold<3>(
+                        hierarchy_, std::span<const double>(&isovalue_, 1), how...);
                 });
             }
             if (!projection.keeps_distance) {
                 return search([&](const auto&... how) {
-                    return find_collapse_error(hierarchy_, isovalue_, how...);
+                    return engine::find_collapse_error(hierarchy_, isovalue_, how...);
                 });
             }
             return search([&](const auto&... how) {
-                return find_collapse_distance(hierarchy_, isovalue_, whole().surface, how...);
+                return engine::find_collapse_distance(hierarchy_, isovalue_, whole().surface,
+                                                      how...);
             });
         });
     }
@@ -158,12 +159,9 @@ Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double
         const Criteria criteria(prerolls, engine::told(projection), isovalues, work);
         const Bounds& bounds = criteria.bounds();
         const TriangleBudget search = engine::threshold_of(projection, work, [&] {
-            const auto find = [&](const detail::MakeCriterion& make) {
-                return engine::find_threshold<dimension>(
-                    hierarchy, isovalues, make, {bounds, bounds.greatest() - bounds.least()},
-                    projection.max_triangles, options, work.executor);
-            };
-            return detail::with_made(engine::criteria_at(criteria), find);
+            return engine::find_threshold<dimension>(
+                hierarchy, isovalues, engine::criteria_at(criteria), bounds,
+                projection.max_triangles, options, work.executor);
         });
         work.begin("drawing");
         return Projected<Result>{draw(hierarchy, criteria.at(search.threshold), bounds), search};
@@ -172,18 +170,18 @@ Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double
 
 }  // namespace
 
-double default_error(const HighOrder& data) {
+double detail::default_error(const HighOrder& data) {
     const double range = engine::range_of(data);
     return range > 0 ? 1e-3 * range : 1;
 }
 
 Projection with_error(const Prerolls& prerolls, Projection projection, const Work& work) {
-    if (projection.criterion) return projection;
+    if (projection.has_criterion()) return projection;
     const std::shared_ptr<const HighOrder> data = prerolls.high_order(work);
     if (data == nullptr) return projection;
     if (projection.draws_everything()) {
         projection.indicator = "error";
-        projection.threshold = default_error(*data);
+        projection.threshold = detail::default_error(*data);
     } else if (projection.indicator == "offset" && !projection.threshold) {
         projection.indicator = "error";  // within a number of triangles, or by a lens alone
     }

@@ -101,7 +101,7 @@ public:
     ChosenIndicator finest(const Work& work) {
         const IndicatorKind& offset = indicator_named("offset");
         const FieldOnGrid& field = asked(work);
-        if (between_frames() || !are_split_bounds_worth_while(field.facts())) {
+        if (between_frames() || !detail::are_split_bounds_worth_while(field.facts())) {
             return choose(offset, 1, {}, work);
         }
         if (field.facts().shared != nullptr) {  // bounds of nodes are agreed

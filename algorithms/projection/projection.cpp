@@ -9,12 +9,16 @@
 namespace nestgrid {
 
 void Projection::check() const {
-    if ((criterion == nullptr) != (bounds == nullptr)) {
+    if (has_criterion() != (bounds != nullptr)) {
         throw InvalidInput("a projection by a criterion needs bounds, and no other one has them");
     }
     if (criterion != nullptr && (threshold || max_triangles > 0 || !asks_for_offsets())) {
         throw InvalidInput(
             "a projection by a criterion has no threshold, nor anything else that chooses one");
+    }
+    if (criterion_at != nullptr && (lens || region || blend != 1 || indicator != "offset")) {
+        throw InvalidInput(
+            "a projection by a criterion of one's own has no indicator, lens, region or blend");
     }
     if (!(blend >= 1) || !std::isfinite(blend)) {
         throw InvalidInput("blend is not a finite number of at least 1");

@@ -117,7 +117,7 @@ double Polylines::length(std::size_t i) const {
     return sum;
 }
 
-void append_polylines(Polylines& to, const Surface<2>& segments, double value) {
+void detail::append_polylines(Polylines& to, const Surface<2>& segments, double value) {
     const std::size_t vertices = segments.vertices.size();
     const std::size_t attributes = vertices == 0 ? 0 : segments.attributes.size() / vertices;
     if (segments.simplices.empty()) return;
@@ -142,7 +142,7 @@ void append_polylines(Polylines& to, const Surface<2>& segments, double value) {
 
 Polylines polylines(const Surface<2>& segments, double value) {
     Polylines result;
-    append_polylines(result, segments, value);
+    detail::append_polylines(result, segments, value);
     return result;
 }
 

@@ -137,7 +137,7 @@ Polylines isolines(const Surface<3>& surface, std::size_t attribute,
     }
     Polylines result;
     for (const IsolineSegments& isoline : found) {
-        append_polylines(result, isoline.segments(), isoline.value());
+        detail::append_polylines(result, isoline.segments(), isoline.value());
     }
     return result;
 }

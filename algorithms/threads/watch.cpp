@@ -93,7 +93,7 @@ template FieldOnGrid watched_field(const FieldOnGrid&, const Hierarchy<double>&,
 
 }  // namespace
 
-FieldOnGrid watched(const FieldOnGrid& field, const Watch& watch) {
+FieldOnGrid detail::watched(const FieldOnGrid& field, const Watch& watch) {
     return field.visit(
         [&](const auto& hierarchy) { return watched_field(field, hierarchy, watch); });
 }

@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/collapse_colours.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
@@ -87,12 +86,11 @@ int main() {
     std::printf("%zu of them left, distances %.4f there, %.4f back\n", fewer.simplices.size(),
                 left.distance.greatest, left.back.greatest);
     // [budget]
-    const auto at = [&](double threshold) { return Threshold(&deviations, threshold); };
-    const TriangleBudget found =
-        find_collapse_error(erase(grid, field), isovalue, at, deviations, 2000);
+    const auto few = isosurface(
+        grid, field, isovalue, {.max_triangles = 2000, .indicator = "deviation", .collapse = true});
     // [budget]
-    std::printf("%zu triangles at an error of %.4f\n", static_cast<std::size_t>(found.triangles),
-                found.threshold);
+    std::printf("%zu triangles at an error of %.4f\n", few.surface.simplices.size(),
+                few.search.threshold);
     const SurfaceReport report = surface_report(surface);
     const bool keeps = measured.value.greatest <= error && collapsed.error <= error &&
                        std::max(off.distance.greatest, off.back.greatest) <= distance &&

@@ -19,7 +19,6 @@
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "colour_figure.hpp"
 #include "discontinuous_figure.hpp"
@@ -167,15 +166,11 @@ void region_figure(const std::string& file) {
     const auto criterion = fine_inside(region, indicator, 0.1, 0.0);
     const auto result = isosurface(grid, field, 0.275, under(criterion, indicator));
     // [region]
-    // [budget_outside]
     const auto criterion_at = [&](double outside) {
         return fine_inside(region, indicator, outside, 0.0);
     };
-    const TriangleBudget found =
-        find_threshold<3>(erase(grid, field), 0.275, criterion_at, indicator, 45'000);
     const auto within =
-        isosurface(grid, field, 0.275, under(criterion_at(found.threshold), indicator));
-    // [budget_outside]
+        isosurface(grid, field, 0.275, under(criterion_at, indicator, {.max_triangles = 45'000}));
     Picture picture(380, 380, 2);
     int view = 0;
     for (const auto* surface : {&result.surface, &within.surface}) {

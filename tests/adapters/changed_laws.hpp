@@ -30,7 +30,6 @@
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
@@ -207,7 +206,10 @@ NamedUses drawings_by(const Hierarchy<Real>& hierarchy, const HierarchicalIndica
     NamedUses all{
         {"isosurface", [&] { isosurface<dimension>(hierarchy, 0.1, under(indicator, 0)); }},
         {"threshold of a budget",
-         [&] { find_threshold<dimension>(hierarchy, 0.1, indicator, 1000000); }},
+         [&] {
+             isosurface<dimension>(hierarchy, 0.1, under(indicator, {.max_triangles = 1000000}))
+                 .search;
+         }},
         {"cut deviations", [&] { cut_deviations(hierarchy, std::array{0.1}, indicator); }},
     };
     if constexpr (dimension == 3) {

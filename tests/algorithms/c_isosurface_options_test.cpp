@@ -9,7 +9,6 @@
 #include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/norm_indicator.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
@@ -105,8 +104,9 @@ TEST(IsosurfacesForC, KeepWithinABudget) {
         scene.options.max_triangles = 60;
         nestgrid_surface surface = draw(scene);
         const HierarchicalIndicator offsets(scene.grid, scene.first);
-        const auto search = find_threshold<std::remove_cvref_t<decltype(scene.grid)>::dimension>(
-            erase(scene.grid, scene.first), isovalue, offsets, 60);
+        const auto search =
+            isosurface(scene.grid, scene.first, isovalue, under(offsets, {.max_triangles = 60}))
+                .search;
         nestgrid_surface_details d{};
         d.size = sizeof(d);
         ASSERT_EQ(nestgrid_details(&surface, &d, nullptr, 0), 0);

@@ -16,7 +16,6 @@
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/slice.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "sample_fields.hpp"
 
@@ -155,8 +154,9 @@ TYPED_TEST(FrameBudgets, SettleWhereTheSearchForABudgetEnds) {
     const Case<TypeParam> c;
     const double isovalue = c.data.isovalue;
     for (const std::uint64_t goal : {4000U, 20000U, 10'000'000U}) {
-        const TriangleBudget exact =
-            find_threshold<3>(erase(c.grid, c.field), isovalue, c.indicator, goal);
+        const TriangleBudget exact = isosurface<3>(erase(c.grid, c.field), isovalue,
+                                                   under(c.indicator, {.max_triangles = goal}))
+                                         .search;
         FrameBudget budget(static_cast<double>(goal), c.greatest());
         for (const double cost : {1.0, 0.0, 1e9, 1.01}) {
             for (int i = 0; i < 3; ++i) budget.drawn(cost * static_cast<double>(goal));

@@ -410,7 +410,7 @@ TEST(KnownBisections, AskForEightNodesWhatTheyAskForOne) {
     for (const double epsilon : {exact, std::nextafter(exact, 0), std::nextafter(exact, 1), 0.0,
                                  least, -least, 1e300, std::nan("")}) {
         const Threshold criterion{&indicator, epsilon};
-        const auto packed = Pack<float>::all(float_below(epsilon));
+        const auto packed = Pack<float>::all(detail::float_below(epsilon));
         for (NodeKey first = 0; first + pack <= grid.node_count(); ++first) {
             std::array<NodeKey, pack> nodes;
             for (std::size_t i = 0; i < pack; ++i) nodes[i] = first + i;

@@ -13,7 +13,6 @@
 #include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/region.hpp>
 #include <nestgrid/algorithms/surface_measures.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/detail/shape_functions.hpp>
 
 #include "closedness.hpp"
@@ -294,24 +293,27 @@ void expect_best_threshold(const Grid& grid, const Field& field, double isovalue
     for (const std::size_t budget : {finest / 40, finest / 7, finest / 2, finest, 2 * finest}) {
         SCOPED_TRACE(budget);
         const TriangleBudget best =
-            find_threshold<3>(erase(grid, field), isovalue, indicator, budget);
+            isosurface<3>(erase(grid, field), isovalue, under(indicator, {.max_triangles = budget}))
+                .search;
         EXPECT_LE(best.triangles, budget);
         EXPECT_EQ(triangles(best.threshold), best.triangles);
         EXPECT_LE(best.extracted, 20 * budget);
         if (best.threshold > 0) {
             // Stopping numbers are bfloat16: nothing changes between this one and the one below.
-            const std::uint16_t code = bfloat16_above(static_cast<float>(best.threshold));
-            EXPECT_EQ(bfloat16_value(code), best.threshold);
-            EXPECT_GT(triangles(bfloat16_value(static_cast<std::uint16_t>(code - 1))), budget);
+            const std::uint16_t code = detail::bfloat16_above(static_cast<float>(best.threshold));
+            EXPECT_EQ(detail::bfloat16_value(code), best.threshold);
+            EXPECT_GT(triangles(detail::bfloat16_value(static_cast<std::uint16_t>(code - 1))),
+                      budget);
         } else {
             EXPECT_GE(budget, finest);
         }
         const auto result = isosurface(grid, field, isovalue, {.max_triangles = budget});
         EXPECT_EQ(result.surface.simplices.size(), best.triangles);
     }
-    EXPECT_THROW(
-        find_threshold<3>(erase(grid, field), indicator.least() - 1, indicator, 1, {.cap = true}),
-        InvalidInput);
+    EXPECT_THROW(isosurface<3>(erase(grid, field), indicator.least() - 1,
+                               under(indicator, {.max_triangles = 1}), {.cap = true})
+                     .search,
+                 InvalidInput);
 }
 
 TEST(TriangleBudgets, AreKeptByTheLeastThreshold) {
@@ -357,7 +359,9 @@ TEST(Regions, LeaveTheRestOfABudgetToTheOutside) {
     const auto fine = isosurface(grid, field, data.isovalue, under(indicator, 0));
     const std::size_t budget = fine.surface.simplices.size() * 2 / 3;
     const TriangleBudget best =
-        find_threshold<3>(erase(grid, field), data.isovalue, criterion_at, indicator, budget);
+        isosurface<3>(erase(grid, field), data.isovalue,
+                      under(criterion_at, indicator, {.max_triangles = budget}))
+            .search;
     const auto mixed =
         isosurface(grid, field, data.isovalue, under(criterion_at(best.threshold), indicator));
     EXPECT_EQ(mixed.surface.simplices.size(), best.triangles);

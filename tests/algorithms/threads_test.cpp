@@ -9,7 +9,6 @@
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/isosurfaces.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <walk/for_each_element.hpp>
 #include <walk/frontier.hpp>
 
@@ -41,9 +40,10 @@ void expect_same_from_threads(const Grid& grid, const Field& field,
         }
         const auto triangles = [&](const Executor& executor) {
             const auto at = [&](double) { return Threshold(criterion); };
-            return find_threshold<Grid::dimension>(erase(grid, field), isovalues[0], at, indicator,
-                                                   1000000, options, executor)
-                .triangles;
+            return isosurface<Grid::dimension>(erase(grid, field), isovalues[0],
+                                               under(at, indicator, {.max_triangles = 1000000}),
+                                               options, {executor})
+                .search.triangles;
         };
         EXPECT_EQ(triangles(SequentialExecutor{}), alone[0].surface.simplices.size());
         EXPECT_EQ(triangles(ThreadExecutor(2)), alone[0].surface.simplices.size());
@@ -387,9 +387,13 @@ TEST(ThreadsOnMeshSinks, FillThemTheSame) {
 
 TEST(ThreadsOnBudgets, FindTheSameThreshold) {
     const SphereIn s;
-    const auto one = find_threshold<3>(erase(s.grid, s.field), s.data.isovalue, s.indicator, 1000);
-    const auto two = find_threshold<3>(erase(s.grid, s.field), s.data.isovalue, s.indicator, 1000,
-                                       {}, ThreadExecutor(2));
+    const auto one = isosurface<3>(erase(s.grid, s.field), s.data.isovalue,
+                                   under(s.indicator, {.max_triangles = 1000}))
+                         .search;
+    const auto two =
+        isosurface<3>(erase(s.grid, s.field), s.data.isovalue,
+                      under(s.indicator, {.max_triangles = 1000}), {}, {ThreadExecutor(2)})
+            .search;
     EXPECT_EQ(one.threshold, two.threshold);
     EXPECT_EQ(one.triangles, two.triangles);
 }

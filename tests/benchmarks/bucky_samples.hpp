@@ -117,9 +117,10 @@ struct Bucky : BuckySamples {
     std::vector<typename Handwritten::Node> handwritten_nodes() const {
         std::vector<typename Handwritten::Node> result;
         for (std::size_t i = 0; i < samples.size(); ++i) {
-            result.push_back({samples[i],
-                              nestgrid::bfloat16_above(static_cast<float>(indicator.stop(i))),
-                              nestgrid::bfloat16_above(indicator.bound(i))});
+            result.push_back(
+                {samples[i],
+                 nestgrid::detail::bfloat16_above(static_cast<float>(indicator.stop(i))),
+                 nestgrid::detail::bfloat16_above(indicator.bound(i))});
         }
         return result;
     }

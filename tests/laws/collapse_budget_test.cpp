@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/adapters/bisection.hpp>
-#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 
 #include "families.hpp"
@@ -57,7 +56,10 @@ TYPED_TEST(CollapseBudgets, AreKeptAtTheLeastError) {
                 isosurface<3>(h, 0.0, under(deviations, 0)).surface.simplices.size();
             if (all < 60) return;
             const auto search = [&](std::uint64_t number) {
-                return find_collapse_error(h, 0.0, thresholds_of(deviations), deviations, number);
+                return isosurface<3>(h, 0.0,
+                                     under(thresholds_of(deviations), deviations,
+                                           {.max_triangles = number, .collapse = true}))
+                    .search;
             };
             EXPECT_EQ(search(all).threshold, 0);
             EXPECT_EQ(search(all).triangles, all);
@@ -95,7 +97,12 @@ TYPED_TEST(CollapseBudgets, AreKeptAtTheLeastDistance) {
                 return surface.simplices.size();
             };
             const auto search = [&](std::uint64_t number) {
-                return find_collapse_distance(h, 0.0, whole, at, deviations, number);
+                return isosurface<3>(
+                           h, 0.0,
+                           under(
+                               at, deviations,
+                               {.max_triangles = number, .collapse = true, .keeps_distance = true}))
+                    .search;
             };
             EXPECT_EQ(search(all).threshold, 0);
             EXPECT_EQ(search(all).triangles, all);
@@ -121,8 +128,11 @@ struct Sampled {
           deviations(grid, field, NodeError::deviation) {}
 
     TriangleBudget find(std::uint64_t number, const IsosurfaceOptions& options = {}) const {
-        return find_collapse_error(erase(grid, field), data.isovalue, thresholds_of(deviations),
-                                   deviations, number, options);
+        return isosurface<3>(erase(grid, field), data.isovalue,
+                             under(thresholds_of(deviations), deviations,
+                                   {.max_triangles = number, .collapse = true}),
+                             options)
+            .search;
     }
 
     SampledField data;
@@ -154,8 +164,11 @@ TEST(CollapseBudgets, AreFilledByDistancesInFewTrials) {
         const Surface<3> whole =
             isosurface(sampled.grid, sampled.field, sampled.data.isovalue).surface;
         const TriangleBudget found =
-            find_collapse_distance(erase(sampled.grid, sampled.field), sampled.data.isovalue, whole,
-                                   thresholds_of(sampled.deviations), sampled.deviations, number);
+            isosurface<3>(
+                erase(sampled.grid, sampled.field), sampled.data.isovalue,
+                under(thresholds_of(sampled.deviations), sampled.deviations,
+                      {.max_triangles = number, .collapse = true, .keeps_distance = true}))
+                .search;
         EXPECT_TRUE(found.end() == BudgetEnd::filled || found.next_triangles > number);
         EXPECT_LE(found.triangles, number);
         EXPECT_LE(found.trials, 8);

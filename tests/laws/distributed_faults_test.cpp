@@ -5,8 +5,6 @@
 // that names it, and none waits for a message that never comes.
 #include <optional>
 
-#include <nestgrid/algorithms/triangle_budget.hpp>
-
 #include "distributed_judge.hpp"
 #include "refusal.hpp"
 #include "sample_grids.hpp"

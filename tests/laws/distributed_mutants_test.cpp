@@ -10,7 +10,6 @@
 #include <nestgrid/algorithms/between.hpp>
 #include <nestgrid/algorithms/isosurface_series.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "record_judge.hpp"
 
@@ -46,7 +45,9 @@ struct Budget {
         for (const std::uint64_t most : {150, 600}) {
             try {
                 const auto found =
-                    find_threshold<3>(erase(grid, field), 0.1, indicator, most, {}, executor);
+                    isosurface<3>(erase(grid, field), 0.1,
+                                  under(indicator, {.max_triangles = most}), {}, {executor})
+                        .search;
                 record.put({found.threshold, static_cast<double>(found.triangles),
                             static_cast<double>(found.extracted)});
                 put(isosurface(grid, field, 0.1, under(indicator, found.threshold), {}, {executor}),

@@ -11,7 +11,6 @@
 #include <nestgrid/algorithms/probe_line.hpp>
 #include <nestgrid/algorithms/shading.hpp>
 #include <nestgrid/algorithms/slice.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include <level_sets/leaf_bounds.hpp>
 
@@ -50,8 +49,10 @@ struct DrawWithin {
                     isosurface(grid, field, 0.1, {.max_triangles = most}, options, {executor});
                 record.put(numbers_of_drawn(drawn));
                 record.put_surface(drawn.surface);
-                record.put(numbers_of(find_threshold<dim>(erase(grid, field), 0.1, indicator, most,
-                                                          options, executor)));
+                record.put(numbers_of(isosurface<dim>(erase(grid, field), 0.1,
+                                                      under(indicator, {.max_triangles = most}),
+                                                      options, {executor})
+                                          .search));
             } catch (const InvalidInput& e) {
                 record.put({static_cast<double>(std::string(e.what()).size())});
             }
@@ -74,8 +75,10 @@ struct DrawWithin {
         record.put(numbers_of_drawn(drawn));
         record.put_surface(drawn.surface);
         const auto everywhere = [&](double threshold) { return Threshold(&indicator, threshold); };
-        record.put(numbers_of(
-            find_threshold(erase(grid, field), plane, everywhere, indicator, 250, {}, executor)));
+        record.put(
+            numbers_of(slice(erase(grid, field), plane,
+                             under(everywhere, indicator, {.max_triangles = 250}), {}, {executor})
+                           .search));
     }
 };
 
@@ -117,8 +120,10 @@ struct Shade {
         const HierarchicalIndicator spread(grid, field, Spread{.factor = 2}, executor);
         put(shading(grid, field, under(Blended(&spread, 0.1, 2), spread), {}, {executor}));
         const auto everywhere = [&](double threshold) { return Threshold(&indicator, threshold); };
-        record.put(numbers_of(
-            find_shading_threshold(erase(grid, field), everywhere, indicator, 90, {}, executor)));
+        record.put(
+            numbers_of(shading(erase(grid, field),
+                               under(everywhere, indicator, {.max_triangles = 90}), {}, {executor})
+                           .search));
     }
 };
 

@@ -4,7 +4,6 @@
 // What is not made for distributed grids is refused, on all ranks, before they talk to each other;
 // docs/distributed.md lists the same.
 #include <nestgrid/algorithms/cell_data.hpp>
-#include <nestgrid/algorithms/collapse_budget.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/discontinuous_data.hpp>
 #include <nestgrid/algorithms/element_deviations.hpp>
@@ -101,11 +100,8 @@ const std::vector<Refused<3>> in_space{
      }},
     {"number of triangles after collapses",
      [](const auto& s) {
-         const auto everywhere = [&](double threshold) {
-             return std::make_unique<const Threshold>(&s.indicator, threshold);
-         };
-         detail::find_collapse_error(s.hierarchy(), 0.5, everywhere, {s.indicator, 1.0}, 50, {},
-                                     SequentialExecutor{});
+         isosurface<3>(s.hierarchy(), 0.5,
+                       under(s.indicator, {.max_triangles = 50, .collapse = true}));
      }},
 };
 

@@ -166,7 +166,7 @@ TYPED_TEST(Drawing, LetsColoursFollowTheData) {
     std::size_t split = 0;
     bool simplices = false;
     for_each_drawn<TypeParam>(46, [&](const auto& hierarchy, Prerolls& prerolls, auto dimension) {
-        simplices = cuts_are_errors(hierarchy.facts());  // whose colours are exact
+        simplices = detail::cuts_are_errors(hierarchy.facts());  // whose colours are exact
         for (const double threshold : {0.0, 0.1}) {
             const Projection plain{.threshold = threshold};
             Projection followed = plain;

@@ -4,10 +4,10 @@
 // Data of higher degree within a number of triangles, in a lens, and between frames.
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/frames.hpp>
 #include <nestgrid/algorithms/polynomial_values.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
 
 #include "degree_world.hpp"
 #include "high_order_judge.hpp"
@@ -51,7 +51,8 @@ void for_each_world(unsigned count, const Function& function) {
 // Budgets.
 
 double next_below(double threshold) {
-    return bfloat16_value(static_cast<std::uint16_t>(bfloat16_below(threshold) - 1));
+    return detail::bfloat16_value(
+        static_cast<std::uint16_t>(detail::bfloat16_below(threshold) - 1));
 }
 
 /// \param draw draw(projection) draws

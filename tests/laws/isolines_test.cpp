@@ -434,7 +434,7 @@ TEST(Isolines, RefusesWrongInput) {
     segment.attributes = {0, 1};
     Polylines lines = polylines(segment, 0);
     segment.attributes.clear();
-    EXPECT_THROW(append_polylines(lines, segment, 0), InvalidInput);
+    EXPECT_THROW(detail::append_polylines(lines, segment, 0), InvalidInput);
 
     const auto plane = BalancedQuadtree::grids();
     const auto space = BalancedOctree::grids();

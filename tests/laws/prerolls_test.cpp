@@ -15,7 +15,6 @@
 #include <nestgrid/algorithms/isolines.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "closedness.hpp"
 #include "families.hpp"

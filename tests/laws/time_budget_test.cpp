@@ -7,7 +7,6 @@
 #include <nestgrid/algorithms/between.hpp>
 #include <nestgrid/algorithms/key_frames.hpp>
 #include <nestgrid/algorithms/slice.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "closedness.hpp"
 #include "sample_grids.hpp"
@@ -40,7 +39,9 @@ TEST(TimeBudgets, AreKeptByAThresholdNextToTheLeast) {
             isosurface(grid, field, middle, under(at(0), indicator)).surface.simplices.size();
         ASSERT_GT(finest, 100U);
         for (const std::uint64_t budget : {finest / 5, finest / 2}) {
-            const TriangleBudget best = find_threshold<3>(hierarchy, middle, indicator, budget);
+            const TriangleBudget best =
+                isosurface<3>(hierarchy, middle, under(indicator, {.max_triangles = budget}))
+                    .search;
             const auto triangles = [&](double threshold) {
                 return isosurface(grid, field, middle, under(at(threshold), indicator))
                     .surface.simplices.size();
@@ -52,7 +53,8 @@ TEST(TimeBudgets, AreKeptByAThresholdNextToTheLeast) {
         const std::size_t finest_slice =
             slice(grid, field, plane, under(at(0), indicator)).surface.simplices.size();
         for (const std::uint64_t budget : {finest_slice / 2, 2 * finest_slice}) {
-            const TriangleBudget best = find_threshold(hierarchy, plane, at, indicator, budget);
+            const TriangleBudget best =
+                slice(hierarchy, plane, under(at, indicator, {.max_triangles = budget})).search;
             EXPECT_LE(best.triangles, budget);
             EXPECT_LE(slice(grid, field, plane, under(at(best.threshold), indicator))
                           .surface.simplices.size(),

@@ -14,7 +14,6 @@
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
 #include <nestgrid/algorithms/slices.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
@@ -33,8 +32,8 @@ TYPED_TEST_SUITE(TriangleBudgets, Families);
 
 /// The bfloat16 number below a positive one.
 double next_below(double threshold) {
-    return bfloat16_value(
-        static_cast<std::uint16_t>(bfloat16_above(static_cast<float>(threshold)) - 1));
+    return detail::bfloat16_value(
+        static_cast<std::uint16_t>(detail::bfloat16_above(static_cast<float>(threshold)) - 1));
 }
 
 /// Expects the law of several budgets. Where the coarsest drawing has more, the budget is refused,
@@ -128,7 +127,10 @@ TYPED_TEST(TriangleBudgets, AreKeptUnderEveryCriterion) {
                         .surface.simplices.size();
                 },
                 [&](std::uint64_t budget) {
-                    return find_threshold<dimension>(hierarchy, 0.0, criterion_at, bounds, budget);
+                    return isosurface<dimension>(
+                               hierarchy, 0.0,
+                               under(criterion_at, bounds, {.max_triangles = budget}))
+                        .search;
                 });
         });
     }
@@ -178,7 +180,10 @@ TYPED_TEST(TriangleBudgets, AreKeptBySlicesAndBoundaries) {
                         return count;
                     },
                     [&](std::uint64_t budget) {
-                        return find_threshold(hierarchy, *f, criterion_at, bounds, budget, options);
+                        return slice(hierarchy, *f,
+                                     under(criterion_at, bounds, {.max_triangles = budget}),
+                                     options)
+                            .search;
                     });
             });
         }
@@ -214,8 +219,10 @@ TYPED_TEST(TriangleBudgets, AreKeptByHeightsAndShadings) {
                             return count;
                         },
                         [&](std::uint64_t budget) {
-                            return find_shading_threshold(erase(grid, field), criterion_at, bounds,
-                                                          budget, options);
+                            return shading(erase(grid, field),
+                                           under(criterion_at, bounds, {.max_triangles = budget}),
+                                           options)
+                                .search;
                         });
                 });
             }
@@ -241,15 +248,19 @@ void expect_closed_within_budgets() {
             return s.surface.simplices.size();
         };
         expect_kept(draw, [&](std::uint64_t budget) {
-            return find_threshold<3>(hierarchy, data.isovalue, criterion_at, bounds, budget,
-                                     {.cap = true});
+            return isosurface<3>(hierarchy, data.isovalue,
+                                 under(criterion_at, bounds, {.max_triangles = budget}),
+                                 {.cap = true})
+                .search;
         });
         const std::size_t finest =
             boundary_surface(grid, field, under(criterion_at(0), bounds)).surface.simplices.size();
         for (const std::size_t budget : {finest / 8, finest / 2, finest}) {
             try {
-                const TriangleBudget best = find_threshold(hierarchy, everywhere, criterion_at,
-                                                           bounds, budget, {.cap = true});
+                const TriangleBudget best =
+                    slice(hierarchy, everywhere,
+                          under(criterion_at, bounds, {.max_triangles = budget}), {.cap = true})
+                        .search;
                 expect_closed(
                     boundary_surface(grid, field, under(criterion_at(best.threshold), bounds))
                         .surface,
@@ -308,7 +319,9 @@ TEST(LeastThreshold, EndsWhereProgressCancels) {
         int left = calls;
         const IsosurfaceOptions options{.progress = [&](const auto&) { return left-- > 0; }};
         const TriangleBudget found =
-            find_threshold<3>(erase(grid, field), data.isovalue, at, indicator, budget, options);
+            isosurface<3>(erase(grid, field), data.isovalue,
+                          under(at, indicator, {.max_triangles = budget}), options)
+                .search;
         cancelled += found.cancelled ? 1 : 0;
         EXPECT_LE(found.triangles, budget);
         const auto drawn =

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/least_threshold.hpp>
 #include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/slices.hpp>
 #include <nestgrid/algorithms/surface_isolines.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 
 #include "options/lens_options.hpp"
 #include "options/time_options.hpp"

@@ -34,7 +34,7 @@ public:
     /// Stopped when this call is to end.
     template <class Function>
     decltype(auto) with(const FieldOnGrid& field, const Function& function) const {
-        return watched(field, *this).visit(function);
+        return detail::watched(field, *this).visit(function);
     }
 
 private:

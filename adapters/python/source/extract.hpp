@@ -49,7 +49,7 @@ struct SurfaceRequest {
     double slice_distance = 0;
 };
 
-/// \throw InvalidInput, GridError as isosurfaces() and find_threshold(), and for a blend below 1
+/// \throw InvalidInput, GridError as isosurfaces(), and for a blend below 1
 Drawn draw_isosurface(const Source& source, double isovalue, const SurfaceRequest& request,
                       const Projection& projection, const Call& call);
 /// One for each value, in one walk.
@@ -64,7 +64,7 @@ Drawn draw_isoband(const Source& source, double low, double high, const SurfaceR
 /// \throw InvalidInput, GridError as boundary_surface()
 Drawn draw_boundary(const Source& source, const SurfaceRequest& request,
                     const Projection& projection, const Call& call);
-/// \throw InvalidInput, GridError as slices() and find_threshold()
+/// \throw InvalidInput, GridError as slices()
 Drawn draw_slice(const Source& source, const LevelFunction& function, const SurfaceRequest& request,
                  const Projection& projection, const Call& call);
 /// \throw InvalidInput, GridError as isolines()

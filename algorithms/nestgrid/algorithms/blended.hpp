@@ -21,9 +21,13 @@
 
 namespace nestgrid {
 
+namespace detail {
+
 /// 1 where eta <= epsilon, 0 where eta >= factor * epsilon, linear between.
 /// \param factor at least 1
 double blend_weight(double eta, double epsilon, double factor);
+
+}  // namespace detail
 
 /// S(x) = blend_weight(eta(x), epsilon, factor). With factor 1 it is Threshold. The indicator must
 /// outlive the criterion.

@@ -20,8 +20,7 @@ public:
     Criteria(const Prerolls& prerolls, Projection projection, std::span<const double> isovalues,
              const Work& work);
 
-    /// S at a threshold, which holds at more nodes the greater it is: to be handed to
-    /// find_threshold(), too. Must not outlive this object.
+    /// S at a threshold, which holds at more nodes the greater it is. Must not outlive this object.
     /// \throw InvalidInput for a threshold above 0, where the projection asks for everything
     AnyCriterion at(double threshold) const;
     /// S at the threshold of the projection.

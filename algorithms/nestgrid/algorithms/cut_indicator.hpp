@@ -29,10 +29,14 @@
 
 namespace nestgrid {
 
+namespace detail {
+
 /// Whether all elements are simplices, where cut deviations are the errors themselves. In other
 /// shapes the flatness of triangles counts several times, and deviations of elements
 /// (NodeError::deviation) keep the same error with fewer triangles.
 bool cuts_are_errors(const HierarchyFacts& facts);
+
+}  // namespace detail
 
 /// \param bounds of the same grid and field: a HierarchicalIndicator, or other Bounds
 /// \param executor of several threads, or of one; the result does not depend on it

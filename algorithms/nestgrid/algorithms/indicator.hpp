@@ -41,8 +41,8 @@
 #include <memory>
 
 #include <nestgrid/algorithms/criterion.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/algorithms/executor.hpp>
-#include <nestgrid/algorithms/round_up.hpp>
 #include <nestgrid/detail/erase.hpp>
 #include <nestgrid/detail/hanging.hpp>
 #include <nestgrid/detail/key_table.hpp>
@@ -244,11 +244,13 @@ public:
                 const LeafErrors& leaf_errors = {});
 
     /// The saturated indicator of a node, for S. Nodes of the coarse grid have one too.
-    double stop(NodeKey node) const override { return bfloat16_value(entries_.at(node).stop); }
+    double stop(NodeKey node) const override {
+        return detail::bfloat16_value(entries_.at(node).stop);
+    }
     NodeMask stops_at_most(const Rule& rule, std::span<const NodeKey> nodes,
                            double epsilon) const override {
         if (!(epsilon >= 0)) return 0;
-        const std::uint16_t most = bfloat16_below(epsilon);
+        const std::uint16_t most = detail::bfloat16_below(epsilon);
         if (rule.inside != no_new_node && entries_.at(nodes[rule.inside]).stop <= most) {
             return rule.all();
         }
@@ -268,12 +270,12 @@ public:
         return own_errors_ ? double{bound(node)} : stop(node);
     }
     /// The bound of a node, for the intersection test.
-    float bound(NodeKey node) const { return bfloat16_value(entries_.at(node).bound); }
+    float bound(NodeKey node) const { return detail::bfloat16_value(entries_.at(node).bound); }
     double bound(const Rule& rule, std::span<const NodeKey> nodes) const override {
         if (rule.inside != no_new_node) return bound(nodes[rule.inside]);
         std::uint16_t largest = 0;
         for (const NodeKey node : nodes) largest = std::max(largest, entries_.at(node).bound);
-        return bfloat16_value(largest);
+        return detail::bfloat16_value(largest);
     }
 
     /// Elements that stop conform on a grid without hanging nodes where each split makes one new

@@ -22,8 +22,12 @@ enum class ThresholdUnit : std::uint8_t {
     length,  ///< units of length of the grid
     none,    ///< pure numbers
 };
+namespace detail {
+
 /// "data", "length" or "none".
 const char* unit_name(ThresholdUnit unit);
+
+}  // namespace detail
 
 /// What an indicator is made of, beside the field.
 struct IndicatorInput {
@@ -66,7 +70,11 @@ const IndicatorKind& indicator_named(std::string_view name);
 /// simplices, elsewhere and between frames the deviations of elements (cuts_are_errors()).
 const IndicatorKind& error_indicator(const HierarchyFacts& facts, bool between_frames);
 
+namespace detail {
+
 /// "a, b and c": the names, for sentences.
 std::string indicator_names();
+
+}  // namespace detail
 
 }  // namespace nestgrid

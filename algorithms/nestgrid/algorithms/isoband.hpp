@@ -9,10 +9,6 @@
 
 namespace nestgrid {
 
-/// Appends a surface with its orientation reversed: triangles turned, normals to the other side.
-template <int dimension>
-void append_reversed(Surface<dimension>& to, const Surface<dimension>& from);
-
 /// The surface around low <= U < high inside the domain, in one traversal. Where both level sets
 /// keep away from the boundary of the domain it is closed, and encloses volume_between().
 /// \return counts and the larger error bound of the two level sets; a number of triangles is one of

@@ -16,8 +16,7 @@
 // of nearest points for every triangle of both, and one walk over all elements.
 #pragma once
 
-#include <functional>
-#include <memory>
+#include <cstddef>
 
 #include <nestgrid/algorithms/criterion.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
@@ -32,36 +31,16 @@ struct IsosurfaceWithin {
     std::size_t points = 0;  ///< that were too far, in all rounds
 };
 
-namespace detail {
-
-/// Makes the criterion that also draws finely wherever an indicator is 1, and not 0.
-using AlsoFine = std::function<std::unique_ptr<const Criterion>(const Indicator& fine)>;
-
-template <class Real>
-IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isovalue,
-                                   const Nearness& nearness, const AlsoFine& criterion,
-                                   const Bounds& bounds, const IsosurfaceOptions& options,
-                                   const Executor& executor);
-
-}  // namespace detail
-
 /// What isosurface() draws with the same arguments, and more detail where it is farther than the
 /// distance from the surface of all data. The result does not depend on the executor.
 /// \param options at_nodes must be that of the surface of all data; a cap is not compared
 /// \throw InvalidInput as isosurface(); where the distance is not positive, and where it cannot be
 ///        kept because `nearness.whole` is another surface than that of all data
 /// \throw GridError as isosurface()
-template <class Real, std::derived_from<Criterion> S>
+template <class Real>
 IsosurfaceWithin isosurface_within(const Hierarchy<Real>& hierarchy, double isovalue,
-                                   const Nearness& nearness, const S& criterion,
+                                   const Nearness& nearness, const AnyCriterion& criterion,
                                    const Bounds& bounds, const IsosurfaceOptions& options = {},
-                                   const Executor& executor = SequentialExecutor{}) {
-    const auto also_fine = [&](const Indicator& fine) -> std::unique_ptr<const Criterion> {
-        using Both = decltype(criterion && Threshold(&fine, 0.5));
-        return std::make_unique<const Both>(criterion && Threshold(&fine, 0.5));
-    };
-    return detail::isosurface_within(hierarchy, isovalue, nearness, also_fine, bounds, options,
-                                     executor);
-}
+                                   const Executor& executor = SequentialExecutor{});
 
 }  // namespace nestgrid

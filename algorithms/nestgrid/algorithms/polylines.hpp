@@ -45,8 +45,12 @@ struct Polylines {
 /// \throw InvalidInput where a segment names a vertex that does not exist
 Polylines polylines(const Surface<2>& segments, double value);
 
+namespace detail {
+
 /// The same, behind the lines of `to`.
 /// \throw InvalidInput also where the vertices of `to` have another number of attributes
 void append_polylines(Polylines& to, const Surface<2>& segments, double value);
+
+}  // namespace detail
 
 }  // namespace nestgrid

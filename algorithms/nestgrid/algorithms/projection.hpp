@@ -6,6 +6,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -32,6 +33,9 @@ struct RegionRequest {
     Distance distance;     ///< from it, not positive inside (domains.hpp)
     double threshold = 0;  ///< inside, in the units of the indicator
 };
+
+/// S at a threshold from 0 to 3.4e38, which holds at more nodes the greater that is.
+using CriterionAt = std::function<AnyCriterion(double threshold)>;
 
 /// Which elements may stop.
 struct Projection {
@@ -65,15 +69,20 @@ struct Projection {
     /// A criterion in the place of the threshold, the indicator and all that belongs to them, with
     /// bounds for the search; both are set by under(). No preroll is made.
     std::shared_ptr<const Criterion> criterion{};
+    /// The same for one that has a threshold: then threshold, max_triangles, colour_tolerance and
+    /// all that collapses go with it.
+    CriterionAt criterion_at{};
     const Bounds* bounds = nullptr;  ///< borrowed
 
     /// The threshold where none is searched for.
     double least_threshold() const {
         return threshold.value_or(lens ? std::numeric_limits<double>::infinity() : 0);
     }
+    /// Whether under() has given it a criterion.
+    bool has_criterion() const { return criterion != nullptr || criterion_at != nullptr; }
     /// Whether it can be kept without a preroll: everything is drawn.
     bool draws_everything() const {
-        return criterion == nullptr && indicator == "offset" && least_threshold() == 0 &&
+        return !has_criterion() && indicator == "offset" && least_threshold() == 0 &&
                max_triangles == 0 && blend == 1 && !lens;
     }
     /// Whether it does so with a threshold that is given, so that no other one is asked for.
@@ -110,7 +119,24 @@ template <std::derived_from<Indicator> I>
                                                                            double threshold) {
         return under(Threshold(&indicator, threshold), indicator);
     }
-/// The same for a criterion of any class, which is borrowed.
+/// The projection by a criterion for each threshold, with the threshold or the number of triangles
+/// of `how`, and what else goes with these.
+/// \param criterion_at of a threshold: a Blended, a lens or fine_inside (region.hpp), say
+/// \param bounds of the same grid and field, borrowed
+template <std::convertible_to<CriterionAt> Make>
+Projection under(Make criterion_at, const Bounds& bounds, Projection how) {
+    how.criterion_at = std::move(criterion_at);
+    how.bounds = &bounds;
+    return how;
+}
+/// The same for thresholds of an indicator that is bounds, too.
+template <std::derived_from<Indicator> I>
+    requires std::convertible_to<const I&, const Bounds&> Projection under(const I& indicator,
+                                                                           Projection how) {
+        return under([&indicator](double threshold) { return Threshold(&indicator, threshold); },
+                     indicator, std::move(how));
+    }
+/// The projection by a criterion of any class, which is borrowed.
 inline Projection under(const Criterion& criterion, const Bounds& bounds) {
     return {.criterion = std::shared_ptr<const Criterion>(std::shared_ptr<void>(), &criterion),
             .bounds = &bounds};

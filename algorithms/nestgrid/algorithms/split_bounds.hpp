@@ -64,7 +64,11 @@ private:
     std::uint64_t epoch_ = 0;
 };
 
+namespace detail {
+
 /// Whether SplitBounds are made faster than the preroll of a hierarchy, and are offered.
 bool are_split_bounds_worth_while(const HierarchyFacts& facts);
+
+}  // namespace detail
 
 }  // namespace nestgrid

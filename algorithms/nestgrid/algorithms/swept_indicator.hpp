@@ -60,7 +60,7 @@ public:
           epoch_{epoch},
           isovalues_(isovalues.begin(), isovalues.end()) {}
 
-    double stop(NodeKey node) const override { return bfloat16_value(stops_.at(node)); }
+    double stop(NodeKey node) const override { return detail::bfloat16_value(stops_.at(node)); }
     NodeMask stops_at_most(const Rule& /*rule*/, std::span<const NodeKey> nodes,
                            double epsilon) const override;
     Spread spread() const override { return spread_; }

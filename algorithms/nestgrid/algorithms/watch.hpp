@@ -29,9 +29,13 @@ protected:
     Watch& operator=(Watch&&) noexcept = default;
 };
 
+namespace detail {
+
 /// The same field, which calls check() wherever it is asked for elements, values or positions.
 /// \param watch borrowed
 FieldOnGrid watched(const FieldOnGrid& field, const Watch& watch);
+
+}  // namespace detail
 
 /// An executor that tells how far its tasks are.
 class TellingExecutor final : public Executor {
@@ -68,7 +72,7 @@ struct Work {
     /// The field as this work asks it.
     FieldOnGrid on(const FieldOnGrid& field) const {
         const FieldOnGrid& asked = same_field == nullptr ? field : *same_field;
-        return watch == nullptr ? asked : watched(asked, *watch);
+        return watch == nullptr ? asked : detail::watched(asked, *watch);
     }
 
 private:

@@ -26,7 +26,6 @@
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/algorithms/visual_indicator.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
@@ -126,7 +125,8 @@ void write_isosurfaces(const std::string& name, const Grid& grid, const Field& f
     draw("_coarse", Threshold(&offsets, 12), 12, options);
     draw("_cap", Threshold(&offsets, 12), 12, {.normals = false, .cap = true, .at_nodes = true});
     const double found =
-        find_threshold<3>(erase(grid, field), 40, offsets, 1500, options).threshold;
+        isosurface<3>(erase(grid, field), 40, under(offsets, {.max_triangles = 1500}), options)
+            .search.threshold;
     const IsosurfaceOptions finest{.cuts = Cuts::finest, .normals = true};
     draw("_budget", Threshold(&offsets, found), found, finest);
     draw("_finest", Threshold(&offsets, 12), 12, finest);
@@ -162,7 +162,9 @@ void write_slices(const std::string& name, const Grid& grid, const Field& field,
     write_surface(name + "_cylinder",
                   slice(grid, field, cylinder, under(s, offsets), {.normals = true}), 12);
     const auto at = [&](double threshold) { return Threshold(&offsets, threshold); };
-    const double found = find_threshold(erase(grid, field), plane, at, offsets, 300).threshold;
+    const double found =
+        slice(erase(grid, field), plane, under(at, offsets, {.max_triangles = 300}))
+            .search.threshold;
     const auto budget = slice(grid, field, plane, under(at(found), offsets));
     write_surface(name + "_budget_slice", budget, found);
     const std::vector<double> values{-50, 0, 50};

@@ -13,7 +13,6 @@
 #include <nestgrid/algorithms/outlines.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/swept_key_frames.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
 #include "families.hpp"
@@ -198,8 +197,9 @@ TEST(SettledFrames, HaveTheThresholdOfTheSearch) {
                 "triangles=" + std::to_string(goal) + "&isovalue=" + text_of(field.isovalue);
             frame_of(volume.explorer, request + "&motion=moving");
             const Frame frame = frame_of(volume.explorer, request);
-            const TriangleBudget best =
-                find_threshold<3>(erase(grid, samples), field.isovalue, indicator, goal);
+            const TriangleBudget best = isosurface<3>(erase(grid, samples), field.isovalue,
+                                                      under(indicator, {.max_triangles = goal}))
+                                            .search;
             EXPECT_EQ(frame.number("triangles"), double(best.triangles)) << goal;
             EXPECT_EQ(frame.number("threshold"), best.threshold) << goal;
         }
@@ -296,7 +296,7 @@ TYPED_TEST(Explored, ErrorsAreThoseOfTheDataAndOfTheSurfaceOnceNothingMoves) {
         const SweptIndicator cuts =
             cut_deviations({grid, field}, std::span(&at_zero, 1), deviations);
         const Threshold s(&cuts, error);
-        const bool of_one = cuts_are_errors(erase(grid, field).facts());
+        const bool of_one = detail::cuts_are_errors(erase(grid, field).facts());
         const auto of_surface = isosurface(grid, field, at_zero, under(s, deviations));
         const Frame settled = frame_of(explorer, what);
         expect_part(settled, "isosurface", of_one ? of_surface.surface : of_data.surface);
@@ -341,7 +341,7 @@ TYPED_TEST(Explored, CollapsedFramesKeepTheError) {
         const std::string what = "isovalue=0&collapse=on&error=" + text_of(error);
         const SweptIndicator cuts =
             cut_deviations({grid, field}, std::span(&at_zero, 1), deviations);
-        const bool of_one = cuts_are_errors(erase(grid, field).facts());
+        const bool of_one = detail::cuts_are_errors(erase(grid, field).facts());
         const Indicator& indicator = of_one ? static_cast<const Indicator&>(cuts) : deviations;
         auto drawn = isosurface(grid, field, at_zero,
                                 under(Threshold(&indicator, collapse_start * error), deviations));

@@ -14,33 +14,17 @@
 // Cost: mostly three to five surfaces and their collapses.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
+
 #include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/isosurface_options.hpp>
 #include <nestgrid/algorithms/isosurface_within.hpp>
-#include <nestgrid/algorithms/triangle_budget.hpp>
+#include <nestgrid/algorithms/least_threshold.hpp>
+#include <nestgrid/algorithms/projection.hpp>
 
-namespace nestgrid {
-
-namespace detail {
-
-/// Defined for float and double.
-template <class Real>
-TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isovalue,
-                                   const MakeCriterion& criterion_at, const SearchBounds& bounds,
-                                   std::uint64_t max_triangles, const IsosurfaceOptions& options,
-                                   const Executor& executor);
-
-/// Makes the criterion of a distance that also draws finely wherever an indicator is 1, and not 0.
-using MakeAlsoFine =
-    std::function<std::unique_ptr<const Criterion>(double distance, const Indicator& fine)>;
-
-/// Defined for float and double.
-template <class Real>
-TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double isovalue,
-                                      const Surface<3>& whole, const MakeAlsoFine& criterion_at,
-                                      const Bounds& bounds, std::uint64_t max_triangles,
-                                      const IsosurfaceOptions& options, const Executor& executor);
-
-}  // namespace detail
+namespace nestgrid::engine {
 
 /// How many triangles were drawn, and how many collapses left of them.
 struct CollapseTrial {
@@ -54,6 +38,7 @@ using TryCollapse = std::function<std::optional<CollapseTrial>(double error)>;
 /// The least error within which a drawing, whatever it is, is collapsed to at most max_triangles.
 /// It is the `threshold` of the result; where that is 0, all data have no more triangles.
 /// \param range of the data, in the unit of the error
+///
 /// \throw InvalidInput where collapses leave more triangles at twice the range, and what the trials
 ///        throw
 TriangleBudget find_collapse_error(const TryCollapse& within, double range,
@@ -63,23 +48,15 @@ TriangleBudget find_collapse_error(const TryCollapse& within, double range,
 /// collapsed within it, has at most max_triangles. It is the `threshold` of the result; where that
 /// is 0, all data have no more triangles, and nothing is to be collapsed.
 /// \param criterion_at of an error, such as a Threshold on deviations
-/// \param bounds of the same grid and field, for collapse(), too
+/// \param bounds of the same grid and field, which know the range of the data; for collapse(), too
 /// \param options of the surface without a cap; progress is told while surfaces are drawn
 ///
 /// \throw InvalidInput where collapses leave more triangles at any error, and as isosurface()
-template <class Real, MakesCriterion Make, RangedBounds Ranged>
+template <class Real>
 TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isovalue,
-                                   const Make& criterion_at, const Ranged& bounds,
-                                   std::uint64_t max_triangles,
-                                   const IsosurfaceOptions& options = {},
-                                   const Executor& executor = SequentialExecutor{}) {
-    hierarchy.facts().require_dimension(3);
-    return detail::with_made(criterion_at, [&](const detail::MakeCriterion& make) {
-        return detail::find_collapse_error(hierarchy, isovalue, make,
-                                           {bounds, bounds.greatest() - bounds.least()},
-                                           max_triangles, options, executor);
-    });
-}
+                                   const CriterionAt& criterion_at, const Bounds& bounds,
+                                   std::uint64_t max_triangles, const IsosurfaceOptions& options,
+                                   const Executor& executor);
 
 /// The least distance such that the isosurface that isosurface_within() draws with half of it, and
 /// that is then collapsed within it, has at most max_triangles. It is the `threshold` of the
@@ -89,21 +66,13 @@ TriangleBudget find_collapse_error(const Hierarchy<Real>& hierarchy, double isov
 /// \param criterion_at of a distance, such as a Threshold on slope_deviations() (cut_indicator.hpp)
 /// \param bounds of the same grid and field
 /// \param options of the surface without a cap, as for isosurface_within()
+///
 /// \throw InvalidInput where collapses leave more triangles at any distance, and as
 ///        isosurface_within()
-template <class Real, MakesCriterion Make>
+template <class Real>
 TriangleBudget find_collapse_distance(const Hierarchy<Real>& hierarchy, double isovalue,
-                                      const Surface<3>& whole, const Make& criterion_at,
+                                      const Surface<3>& whole, const CriterionAt& criterion_at,
                                       const Bounds& bounds, std::uint64_t max_triangles,
-                                      const IsosurfaceOptions& options = {},
-                                      const Executor& executor = SequentialExecutor{}) {
-    hierarchy.facts().require_dimension(3);
-    const detail::MakeAlsoFine also_fine = [&](double distance, const Indicator& fine) {
-        using Both = decltype(criterion_at(distance) && Threshold(&fine, 0.5));
-        return std::make_unique<const Both>(criterion_at(distance) && Threshold(&fine, 0.5));
-    };
-    return detail::find_collapse_distance(hierarchy, isovalue, whole, also_fine, bounds,
-                                          max_triangles, options, executor);
-}
+                                      const IsosurfaceOptions& options, const Executor& executor);
 
-}  // namespace nestgrid
+}  // namespace nestgrid::engine

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace nestgrid {
+namespace nestgrid::detail {
 
 /// The least float that is not below x >= 0.
 inline float float_above(double x) {
@@ -80,4 +80,4 @@ inline float bfloat16_value(std::uint16_t bits) {
     return std::bit_cast<float>(std::uint32_t{bits} << 16U);
 }
 
-}  // namespace nestgrid
+}  // namespace nestgrid::detail
