@@ -116,7 +116,7 @@ typedef struct nestgrid_grid {
     void (*free_context)(const void* self, void* context);
 
     /* Optional, all of the following: what makes bisections fast, for it is asked of many nodes at
-     * once (tests/data/tetrahedra_in_c.c is an example). A grid may tell them whose elements are
+     * once (tests/support/tetrahedra_in_c.c is an example). A grid may tell them whose elements are
      * nothing but their corners, halved as Maubach (1995) does: word[k] of an element is the node
      * at its corner k, a number of the author's choice, and word[dimension + 1] its tag t, 1 to
      * dimension. Where it is split, the new node z lies between the corners 0 and t, and the
