@@ -11,7 +11,9 @@ from __future__ import annotations
 import json
 import os
 import sys
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Mapping, Sequence
+
+import numpy as np
 
 
 class Refused(Exception):
@@ -30,6 +32,14 @@ class Refused(Exception):
 
 def listed(names: Sequence[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)
+
+
+def packed(arrays: Mapping[str, tuple[np.ndarray, str]]) -> tuple[dict[str, Any], bytes]:
+    """Arrays, each with its type, as an answer: what describes them, and their bytes."""
+    parts = {each: np.ascontiguousarray(data, kind) for each, (data, kind) in arrays.items()}
+    told = [(each, arrays[each][1], part.shape) for each, part in parts.items()]
+    data = b"".join(part.tobytes() for part in parts.values())
+    return {"arrays": told, "shape": [len(data)], "type": "uint8"}, data
 
 
 def answer(read: Callable[[str, str], tuple[dict[str, Any], Any]]) -> None:

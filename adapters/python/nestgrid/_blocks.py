@@ -13,7 +13,7 @@ from . import _nestgrid
 from ._arguments import Unfit, name_of, not_a, sequence, takes, whole
 from ._fields import Field
 from ._nestgrid import InvalidInput
-from ._sources import Numbers, _placed
+from ._sources import Frames, Numbers, _placed
 
 Box = tuple[int, Sequence[int], np.ndarray]
 Rule = Literal["smooth", "centres", "means"]
@@ -101,8 +101,7 @@ class Blocks(Field):
             start,
             rule,
         )
-        source = _nestgrid.blocks(self._built_of[0], [1, *ratios], step, start, rule)
-        self._set(source, name, unit)
+        self._set(_nestgrid.blocks(self._built_of[0], [1, *ratios], step, start, rule), name, unit)
 
     def _size(self) -> str:
         boxes, ratios = self._built_of[:2]
@@ -110,6 +109,37 @@ class Blocks(Field):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _blocks_of, (*self._built_of, self._name, self._unit)
+
+
+class BlockFrames(Frames):
+    """Blocks of one grid and type at several times, from files."""
+
+    _blocks: list[Blocks]
+
+    @classmethod
+    def _of(cls, blocks: list[Blocks], times: list[float], names: list[str]) -> BlockFrames:
+        """names are those of files, for sentences."""
+        frames = cls.__new__(cls)
+        built = [
+            (boxes, [1, *ratios], step, start, rule)
+            for boxes, ratios, step, start, rule in (each._built_of for each in blocks)
+        ]
+        frames._frames = _nestgrid.block_frames(built, times, names)
+        frames._blocks = blocks
+        frames._name = blocks[0].name
+        frames._unit = blocks[0].unit
+        return frames
+
+    def _size(self) -> str:
+        return self._blocks[0]._size()
+
+    def _range_text(self) -> str:
+        ranges = [each.range for each in self._blocks]
+        return f"from {min(r[0] for r in ranges):.6g} to {max(r[1] for r in ranges):.6g}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        names = [f"frame {i}" for i in range(len(self))]
+        return BlockFrames._of, (self._blocks, self.times, names)
 
 
 def _blocks_of(

@@ -25,6 +25,11 @@ def chosen(path: str, name: str, names: list[str]) -> str:
     return name or names[0]
 
 
+def told(time: Any) -> dict[str, float]:
+    """The time of a file, where it tells one."""
+    return {} if time is None else {"time": float(np.ravel(time)[0])}
+
+
 def read_chombo(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
     """Each level has the numbers of its boxes, box by box, field by field, with ghost cells."""
     dim = int(file["Chombo_global"].attrs["SpaceDim"])
@@ -53,7 +58,8 @@ def read_chombo(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]
     start = np.min([low for level, low, _ in boxes if level == 0], axis=0)
     ratios = [np.ravel(level.attrs["ref_ratio"])[0] for level in levels[:-1]]
     place = {"ratio": [int(each) for each in ratios], "spacing": step.tolist()}
-    return boxes, place | {"origin": (start * step).tolist(), "name": wanted}
+    time = file.attrs.get("time", levels[0].attrs.get("time"))
+    return boxes, place | {"origin": (start * step).tolist(), "name": wanted} | told(time)
 
 
 def read_athena(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
@@ -90,7 +96,8 @@ def read_athena(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]
     unread = np.full(size[:dim], np.nan, data.dtype)
     boxes += [(level, [a * n for a, n in zip(where, size)], unread) for level, where in replaced]
     place = {"ratio": [2] * max(levels), "spacing": step[:dim].tolist()}
-    return boxes, place | {"origin": extent[:dim, 0].tolist(), "name": wanted}
+    told_time = told(file.attrs.get("Time"))
+    return boxes, place | {"origin": extent[:dim, 0].tolist(), "name": wanted} | told_time
 
 
 def whole(numbers: np.ndarray, path: str) -> list[int]:
@@ -118,7 +125,10 @@ def read_flash(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
         low = np.array(whole((ends[block, :, 0] - start) / length * 2**level, path)) * size
         boxes.append((level, low.tolist(), data[block].T.reshape(size)))
     place = {"ratio": [2] * max(levels), "spacing": (length / size).tolist()}
-    return boxes, place | {"origin": start.tolist(), "name": wanted}
+    scalars = file["real scalars"][()] if "real scalars" in file else []
+    times = [value for key, value in scalars if key.decode().strip(" \0") == "time"]
+    told_time = told(times[0] if times else None)
+    return boxes, place | {"origin": start.tolist(), "name": wanted} | told_time
 
 
 def grids_of(path: str) -> list[dict[str, str]]:
@@ -160,4 +170,4 @@ def read_enzo(path: str, name: str, open_file: Any) -> tuple[Boxes, dict[str, An
     boxes.sort(key=lambda box: box[0])
     ratios = [whole(coarse / fine, path)[0] for coarse, fine in zip(steps, steps[1:])]
     place = {"ratio": ratios, "spacing": steps[0].tolist(), "origin": start.tolist()}
-    return boxes, place | {"name": name}
+    return boxes, place | {"name": name} | told(grids[0].get("Time"))

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, Sequence, Union
+from typing import Any, NamedTuple, Sequence, Union
 
 import numpy as np
 
@@ -15,10 +15,11 @@ from ._arguments import SampleType, flag, numbers, optional, sample_type, sequen
 from ._arguments import path as path_kind
 from ._arguments import name_of, takes, text, whole
 from ._ask import ask
-from ._blocks import Rule
+from ._blocks import BlockFrames, Blocks, Rule
 from ._choice import Choice, chosen
 from ._fields import Field
-from ._load_cells import load_boxes, load_mesh
+from ._load_cells import load_boxes, load_mesh, load_trees
+from ._load_stored import hierarchy, plotfiles
 from ._nestgrid import InvalidInput, IoError
 from ._sources import Frames, Volume
 
@@ -27,12 +28,18 @@ Numbers = Union[Sequence[float], np.ndarray]
 #: What load() reads, by the end of the name.
 PICTURES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm", ".pnm")
 SUFFIXES = [".nestgrid", ".vti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".raw"]
-SUFFIXES += [".vtu", ".vthb", ".hierarchy", ".athdf", ".dcm", ".dicom", *PICTURES]
+SUFFIXES += [".vtu", ".vthb", ".htg", ".hierarchy", ".athdf", ".dcm", ".dicom", *PICTURES]
 BOXES = (".vthb", ".hierarchy", ".athdf")
 
 
+def _paths(value: Any) -> str | list[str]:
+    if isinstance(value, (list, tuple)):
+        return sequence(path_kind, "a sequence of paths")(value)
+    return path_kind(value)
+
+
 @takes(
-    path=path_kind,
+    path=_paths,
     array=text,
     frame=optional(whole(0, 1 << 40)),
     component=optional(whole(0, 1 << 40)),
@@ -42,9 +49,10 @@ BOXES = (".vthb", ".hierarchy", ".athdf")
     big_endian=flag,
     spacing=optional(numbers),
     rule=optional(name_of(Rule)),
+    times=optional(numbers),
 )
 def load(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     array: str = "",
     *,
     frame: int | None = None,
@@ -55,6 +63,7 @@ def load(
     big_endian: bool = False,
     spacing: Numbers | None = None,
     rule: Rule | None = None,
+    times: Sequence[float] | None = None,
 ) -> Field | Frames:
     """The field of a file: a Volume, a hierarchy's, Cells, Blocks, or Frames of several.
 
@@ -63,10 +72,12 @@ def load(
                 of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it; or a
                 picture; or a plotfile of AMReX, a folder with the file Header, which must stay as
                 it is; or other boxes of cells (Blocks): .vthb, Enzo's .hierarchy, .athdf of
-                Athena++, or HDF5 of Chombo or FLASH, of any name. What has one sample along an
-                axis is a plane: Volume.array[i, j]. Reading .vtu, .vti, .vthb, .nii and pictures
-                needs VTK's Python package, HDF5 and Enzo h5py, DICOM pydicom
-    array       the name of the field, for .nestgrid, boxes, .vtu and .vti, or of the series of
+                Athena++, or HDF5 of Chombo or FLASH, of any name; or .htg, hyper trees divided by
+                two (Octree). Several plotfiles, or files of boxes of one format, with the same
+                boxes, are Frames. What has one sample along an axis is a plane:
+                Volume.array[i, j]. Reading .vtu, .vti, .vthb, .htg, .nii and pictures needs VTK's
+                Python package, HDF5 and Enzo h5py, DICOM pydicom
+    array       the name of the field, for .nestgrid, cells, .vtu and .vti, or of the series of
                 DICOM; "": the only one, or the active one, or that of the slice
     frame       which of several volumes in a file, from 0; None: the first, with a warning that
                 tells how many there are
@@ -77,50 +88,110 @@ def load(
     big_endian  for .raw alone: whether the highest byte of a sample comes first
     spacing     for .raw alone: distance of samples along x, y and z, in units of length; None: 1
     rule        for boxes of cells: of the values at nodes, as Blocks() has it; None: "smooth"
+    times       for several files: ascending, one for each; None: those that the files tell, or
+                0, 1, 2, ... where one of them tells none
 
     Raises IoError where the file cannot be read or is damaged, InvalidInput where there is no such
     field or an argument does not fit the format.
     """
-    name = path.lower() if isinstance(path, str) else ""
-    suffix = max((each for each in SUFFIXES if name.endswith(each)), key=len, default="")
-    plotfile = _plotfile(str(path))
-    boxes = suffix in BOXES or (not suffix and _is_hdf5(str(path)))
-    dicom = not plotfile and (suffix in (".dcm", ".dicom") or _is_dicom(str(path)))
-    if not suffix and not dicom and not plotfile and not boxes:
-        near = suggestion(os.path.splitext(name)[1], SUFFIXES)
-        raise InvalidInput(f"load(): '{path}' ends in none of {', '.join(SUFFIXES)}{near}")
+    paths = [path] if isinstance(path, (str, os.PathLike)) else path
+    given_paths = [str(each) for each in paths]
+    if not given_paths:
+        raise InvalidInput("load(): there are no paths")
+    first = given_paths[0]
+    kinds = [_kind(each) for each in given_paths]
+    suffix, plotfile, boxes, dicom = kinds[0]
+    if not any(kinds[0]):
+        near = suggestion(os.path.splitext(first.lower())[1], SUFFIXES)
+        raise InvalidInput(f"load(): '{first}' ends in none of {', '.join(SUFFIXES)}{near}")
     raw = {"dims": dims, "type": type, "big_endian": big_endian or None, "spacing": spacing}
     given = [each for each, value in raw.items() if value is not None]
     if given and (suffix != ".raw" or plotfile):
-        raise InvalidInput(f"load(): {given[0]} is for .raw files: '{path}' describes itself")
-    named = dicom or plotfile or boxes or suffix in (".nestgrid", ".vti", ".vtu")
+        raise InvalidInput(f"load(): {given[0]} is for .raw files: '{first}' describes itself")
+    named = dicom or plotfile or boxes or suffix in (".nestgrid", ".htg", ".vti", ".vtu")
     if array and not named:
-        raise InvalidInput(f"load(): '{path}' has one array, which has no name: leave out array")
+        raise InvalidInput(f"load(): '{first}' has one array, which has no name: leave out array")
     if rule is not None and not (plotfile or boxes):
-        raise InvalidInput(f"load(): rule is for boxes of cells, not '{path}'")
+        raise InvalidInput(f"load(): rule is for boxes of cells, not '{first}'")
     choice = Choice(frame, component, magnitude)
     if (plotfile or suffix in (".nestgrid", ".raw")) and choice != Choice():
         raise InvalidInput(
-            f"load(): frame, component and magnitude choose nothing in '{path}', which has one "
+            f"load(): frame, component and magnitude choose nothing in '{first}', which has one "
             "number per sample"
         )
+    if len(given_paths) > 1 or times is not None:
+        return _frames(given_paths, kinds, array, choice, rule or "smooth", times)
     if plotfile:
-        return _hierarchy(plotfile, array, rule or "smooth")
+        return plotfiles([plotfile], array, rule or "smooth", [])
     if suffix == ".nestgrid":
-        return _hierarchy(str(path), array)
+        return hierarchy(first, array)
     if dicom:
-        return _read_apart("_read_dicom.py", str(path), array, choice)
-    _require_file(str(path))
+        return _read_apart("_read_dicom.py", first, array, choice)
+    _require_file(first)
     if boxes:
-        return load_boxes(str(path), array, choice, rule or "smooth")
+        return load_boxes(first, array, choice, rule or "smooth")[0]
+    if suffix == ".htg":
+        return load_trees(first, array, choice)
     if suffix == ".vtu":
-        return load_mesh(str(path), array, choice)
+        return load_mesh(first, array, choice)
     if suffix == ".raw":
-        return _raw(str(path), dims, type, big_endian, spacing)
+        return _raw(first, dims, type, big_endian, spacing)
     if suffix in (".vti", ".nii", ".nii.gz", *PICTURES):
-        return _read_apart("_read_vtk.py", str(path), array, choice)
-    place: dict[str, Any] = dict(_nestgrid.volume_file(str(path), suffix in (".mhd", ".mha")))
-    return _volume(str(path), chosen(str(path), choice, **_split(place)), **place)
+        return _read_apart("_read_vtk.py", first, array, choice)
+    place: dict[str, Any] = dict(_nestgrid.volume_file(first, suffix in (".mhd", ".mha")))
+    return _volume(first, chosen(first, choice, **_split(place)), **place)
+
+
+class _Kind(NamedTuple):
+    """What a file is, as far as its name and first bytes tell."""
+
+    suffix: str
+    plotfile: str
+    boxes: bool
+    dicom: bool
+
+
+def _kind(path: str) -> _Kind:
+    name = path.lower()
+    suffix = max((each for each in SUFFIXES if name.endswith(each)), key=len, default="")
+    plotfile = _plotfile(path)
+    boxes = suffix in BOXES or (not suffix and _is_hdf5(path))
+    dicom = not plotfile and (suffix in (".dcm", ".dicom") or _is_dicom(path))
+    return _Kind(suffix, plotfile, boxes, dicom)
+
+
+def _frames(
+    paths: list[str],
+    kinds: list[_Kind],
+    array: str,
+    choice: Choice,
+    rule: Rule,
+    times: Sequence[float] | None,
+) -> Frames:
+    """Several plotfiles or files of boxes."""
+    given = [] if times is None else np.ravel(times).tolist()
+    if times is not None and (len(given) != len(paths) or len(paths) == 1):
+        raise InvalidInput(f"load(): times has {len(given)} numbers for {len(paths)} files")
+    for path, kind in zip(paths, kinds):
+        if not kind.plotfile and not kind.boxes:
+            raise InvalidInput(
+                "load(): several files are frames of plotfiles or of boxes of cells, which "
+                f"'{path}' is not"
+            )
+        if bool(kind.plotfile) != bool(kinds[0].plotfile):
+            raise InvalidInput(f"load(): '{path}' is of another format than '{paths[0]}'")
+    if kinds[0].plotfile:
+        return plotfiles([kind.plotfile for kind in kinds], array, rule, given)
+    loaded: list[tuple[Blocks, float | None]] = []
+    for path in paths:
+        _require_file(path)
+        name = loaded[0][0].name if loaded else array
+        loaded.append(load_boxes(path, name, choice, rule))
+    told = [time for _, time in loaded if time is not None]
+    if not given:
+        given = told if len(told) == len(loaded) else np.arange(float(len(loaded))).tolist()
+    names = [f"'{path}'" for path in paths]
+    return BlockFrames._of([field for field, _ in loaded], given, names)
 
 
 def _plotfile(path: str) -> str:
@@ -152,64 +223,6 @@ def _is_dicom(path: str) -> bool:
 def _split(place: dict[str, Any]) -> dict[str, Any]:
     """Takes the numbers and what they mean away from where they are."""
     return {each: place.pop(each) for each in ("numbers", "slope", "intercept")}
-
-
-class LoadedField(Field):
-    """The field of a .nestgrid file or a plotfile."""
-
-    _file: tuple[str, str, str, tuple[int, int]]
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _loaded_again, self._file
-
-
-class LoadedFrames(Frames):
-    """The frames of a .nestgrid file."""
-
-    _file: tuple[str, str, str, tuple[int, int]]
-
-    def _size(self) -> str:
-        return f"dimension {self.at(self.times[0]).dimension}"
-
-    def _range_text(self) -> str:
-        ranges = [self.at(t).range for t in self.times]
-        least, greatest = min(r[0] for r in ranges), max(r[1] for r in ranges)
-        return f"from {least:.6g} to {greatest:.6g}"
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _loaded_again, self._file
-
-
-def _hierarchy(path: str, array: str, rule: str = "smooth") -> LoadedField | LoadedFrames:
-    loaded, name = _nestgrid.load(path, array, rule)
-    file = (os.path.abspath(path), array, rule, _stamp(path))
-    if isinstance(loaded, _nestgrid.Frames):
-        frames = LoadedFrames.__new__(LoadedFrames)
-        frames._frames = loaded
-        frames._name = name
-        frames._unit = ""
-        frames._file = file
-        return frames
-    field = LoadedField.__new__(LoadedField)
-    field._set(loaded, name, "")
-    field._file = file
-    return field
-
-
-def _stamp(path: str) -> tuple[int, int]:
-    """What changes when a file does."""
-    status = os.stat(os.path.join(path, "Header") if os.path.isdir(path) else path)
-    return status.st_size, status.st_mtime_ns
-
-
-def _loaded_again(path: str, array: str, rule: str, stamp: tuple[int, int]) -> Field | Frames:
-    """What was pickled as the path of its file.
-
-    Raises IoError where the file has changed since.
-    """
-    if os.path.exists(path) and _stamp(path) != stamp:
-        raise IoError(f"{path} has changed since the field was pickled, which keeps its path only")
-    return _hierarchy(path, array, rule)
 
 
 def _require_file(path: str) -> None:

@@ -72,6 +72,19 @@ def blocks(
     origin: ArrayLike,
     rule: str,
 ) -> Source: ...
+def block_frames(
+    frames: Sequence[
+        tuple[
+            Sequence[tuple[int, Sequence[int], np.ndarray]],
+            Sequence[int],
+            ArrayLike,
+            ArrayLike,
+            str,
+        ]
+    ],
+    times: Sequence[float],
+    names: Sequence[str],
+) -> Frames: ...
 def octree(
     leaves: NDArray[np.int64],
     values: NDArray[np.float64],
@@ -87,7 +100,10 @@ def cells(
     values: NDArray[np.float64],
     degrees: NDArray[np.float64],
 ) -> CellSource: ...
-def load(path: str, array: str, rule: str) -> tuple[Source | Frames, str]: ...
+def load(path: str, array: str) -> tuple[Source | Frames, str]: ...
+def plotfiles(
+    paths: Sequence[str], array: str, rule: str, times: Sequence[float]
+) -> tuple[Source | Frames, str]: ...
 def volume_file(path: str, is_meta: bool) -> _VolumeFile: ...
 
 class Domain:

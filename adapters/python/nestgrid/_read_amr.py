@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from _answer import Refused, answer
-from _hdf5_boxes import Boxes, chosen, read_athena, read_chombo, read_enzo, read_flash
+from _hdf5_boxes import Boxes, chosen, read_athena, read_chombo, read_enzo, read_flash, told
 from _read_vtk import check_whole
 from _vtk_amr import boxes_of
 
@@ -67,6 +67,8 @@ def read_with_vtk(path: str, name: str) -> tuple[Boxes, dict[str, Any]]:
         parts.append([numbers for _, _, numbers in boxes])
     stacked = [np.stack(each, axis=-1) for each in zip(*parts)]
     place["name"] = wanted
+    time = amr.GetFieldData().GetArray("TimeValue")
+    place |= told(time.GetTuple1(0) if time is not None and time.GetNumberOfValues() else None)
     return [(level, low, each) for (level, low, _), each in zip(boxes, stacked)], place
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from _answer import Refused, answer, listed
+from _answer import Refused, answer, listed, packed
 from _read_vtk import Errors, check_whole, names_of
 
 
@@ -52,11 +52,8 @@ def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
         "values": (vtk_to_numpy(values), "float64"),
         "degrees": (np.zeros(0) if degrees is None else vtk_to_numpy(degrees), "float64"),
     }
-    parts = {each: np.ascontiguousarray(data, kind) for each, (data, kind) in arrays.items()}
-    data = b"".join(part.tobytes() for part in parts.values())
-    told = [(each, arrays[each][1], part.shape) for each, part in parts.items()]
-    place = {"arrays": told, "name": values.GetName() or "", "shape": [len(data)], "type": "uint8"}
-    return place, data
+    place, data = packed(arrays)
+    return place | {"name": values.GetName() or ""}, data
 
 
 if __name__ == "__main__":

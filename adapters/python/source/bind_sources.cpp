@@ -107,11 +107,11 @@ CellRule rule_named(const std::string& name) {
     return name == "means" ? CellRule::sharp_means : CellRule::sharp_centres;
 }
 
-/// \param boxes level, lowest cell and array of each, of one type
-std::shared_ptr<Source> blocks_of(
-    const std::vector<std::tuple<int, std::vector<int>, py::array>>& boxes,
-    const std::vector<int>& ratios, const Numbers& spacing, const Numbers& origin,
-    const std::string& rule) {
+/// Level, lowest cell and array of each box, of one type.
+using Boxes = std::vector<std::tuple<int, std::vector<int>, py::array>>;
+
+BoxArrays box_arrays(const Boxes& boxes, const std::vector<int>& ratios, const Numbers& spacing,
+                     const Numbers& origin, const std::string& rule) {
     BoxArrays arrays;
     std::vector<std::shared_ptr<const void>> memory;
     const py::array& first = std::get<2>(boxes.front());
@@ -134,7 +134,29 @@ std::shared_ptr<Source> blocks_of(
     arrays.origin = along_indices(origin, indices, 0, "origin");
     arrays.rule = rule_named(rule);
     arrays.memory = std::make_shared<const std::vector<std::shared_ptr<const void>>>(memory);
-    return interruptible(1, [arrays](const Call& call) { return make_blocks(arrays, call); });
+    return arrays;
+}
+
+std::shared_ptr<Source> blocks_of(const Boxes& boxes, const std::vector<int>& ratios,
+                                  const Numbers& spacing, const Numbers& origin,
+                                  const std::string& rule) {
+    const BoxArrays arrays = box_arrays(boxes, ratios, spacing, origin, rule);
+    return interruptible(1, [arrays](const Call& call) {
+        return std::make_shared<Source>(make_blocks({arrays}, {0}, {"it"}, call)[0]);
+    });
+}
+
+using BlockFrame = std::tuple<Boxes, std::vector<int>, Numbers, Numbers, std::string>;
+
+/// \param names of the frames, for sentences
+std::shared_ptr<Frames> block_frames_of(const std::vector<BlockFrame>& frames,
+                                        const std::vector<double>& times,
+                                        const std::vector<std::string>& names) {
+    std::vector<BoxArrays> all;
+    for (const BlockFrame& each : frames) all.push_back(std::apply(box_arrays, each));
+    return interruptible(1, [all, times, names](const Call& call) {
+        return std::make_shared<Frames>(make_blocks(all, times, names, call));
+    });
 }
 
 using Leaves = py::array_t<std::int64_t, py::array::c_style>;
@@ -199,17 +221,27 @@ std::shared_ptr<Source> field_at(const Frames& frames, double t, bool cubic, int
 }
 
 /// The field, or its frames, and its name.
-/// \param rule of the nodes of plotfiles
-py::tuple loaded(const std::string& path, const std::string& array, const std::string& rule) {
-    const auto field = interruptible(1, [path, array, rule = rule_named(rule)](const Call& call) {
-        const bool is_plotfile = std::filesystem::is_directory(path);
-        return std::make_shared<LoadedField>(is_plotfile ? load_plotfile(path, array, rule, call)
-                                                         : load_hierarchy(path, array, call));
-    });
-    if (field->frames.count() == 1) {
-        return py::make_tuple(std::make_shared<Source>(field->frames[0]), field->name);
+py::tuple with_name(const LoadedField& field) {
+    if (field.frames.count() == 1) {
+        return py::make_tuple(std::make_shared<Source>(field.frames[0]), field.name);
     }
-    return py::make_tuple(std::make_shared<Frames>(field->frames), field->name);
+    return py::make_tuple(std::make_shared<Frames>(field.frames), field.name);
+}
+
+py::tuple loaded(const std::string& path, const std::string& array) {
+    return with_name(*interruptible(1, [path, array](const Call& call) {
+        return std::make_shared<LoadedField>(load_hierarchy(path, array, call));
+    }));
+}
+
+/// \param rule of the values at nodes
+/// \param times none for those that the files tell
+py::tuple plotfiles(const std::vector<std::string>& paths, const std::string& array,
+                    const std::string& rule, const std::vector<double>& times) {
+    return with_name(
+        *interruptible(1, [paths, array, times, rule = rule_named(rule)](const Call& call) {
+            return std::make_shared<LoadedField>(load_plotfiles(paths, array, rule, times, call));
+        }));
 }
 
 }  // namespace
@@ -238,6 +270,7 @@ void bind_sources(py::module_& m) {
         py::arg("array"), py::arg("spacing"), py::arg("origin"), py::arg("direction"));
     m.def("blocks", &blocks_of, py::arg("boxes"), py::arg("ratios"), py::arg("spacing"),
           py::arg("origin"), py::arg("rule"));
+    m.def("block_frames", &block_frames_of, py::arg("frames"), py::arg("times"), py::arg("names"));
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),
           py::arg("max_level"), py::arg("coordinates"));
     py::class_<CellSource, Source, std::shared_ptr<CellSource>>(m, "CellSource")
@@ -252,7 +285,9 @@ void bind_sources(py::module_& m) {
         .def_property_readonly("times", &Frames::times)
         .def("clear", &Frames::clear)
         .def("at", &field_at, py::arg("t"), py::arg("cubic"), py::arg("threads"));
-    m.def("load", &loaded, py::arg("path"), py::arg("array"), py::arg("rule"));
+    m.def("load", &loaded, py::arg("path"), py::arg("array"));
+    m.def("plotfiles", &plotfiles, py::arg("paths"), py::arg("array"), py::arg("rule"),
+          py::arg("times"));
 }
 
 }  // namespace nestgrid::python

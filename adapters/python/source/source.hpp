@@ -106,8 +106,12 @@ struct BoxArrays {
     std::shared_ptr<const void> memory;  ///< keeps the data alive
 };
 /// Leaves without a value (NaN) are hidden, with all that share a node with them.
-/// \throw InvalidInput as BlockGrid
-std::shared_ptr<Source> make_blocks(const BoxArrays& given, const Call& call);
+/// \param frames one at least
+/// \param times one for each, ascending
+/// \param names what to call the frames in sentences
+/// \throw InvalidInput as BlockGrid, and where they differ in their grids or types
+Frames make_blocks(const std::vector<BoxArrays>& frames, std::vector<double> times,
+                   const std::vector<std::string>& names, const Call& call);
 /// Linear, quadratic or Lagrange cells.
 class CellSource : public Source {
 public:
@@ -132,10 +136,12 @@ struct LoadedField {
 /// \throw IoError where the file cannot be read, is damaged, or holds no hierarchy
 LoadedField load_hierarchy(const std::filesystem::path& path, const std::string& array,
                            const Call& call);
-/// Loads a plotfile of AMReX, a folder whose files are mapped. Parameters as above.
+/// Loads plotfiles of AMReX, folders whose files are mapped, as frames. Parameters as above.
 /// \param rule of the values at nodes
-LoadedField load_plotfile(const std::filesystem::path& path, const std::string& array,
-                          CellRule rule, const Call& call);
+/// \param times one for each file, ascending; none for those that the files tell
+/// \throw InvalidInput also where times do not ascend, or files differ in their grids or types
+LoadedField load_plotfiles(const std::vector<std::string>& paths, const std::string& array,
+                           CellRule rule, std::vector<double> times, const Call& call);
 /// The place of the field with a name; an empty name stands for the only one.
 /// \throw InvalidInput where there is none
 std::size_t index_of_field(const std::vector<std::string>& names, const std::string& name);

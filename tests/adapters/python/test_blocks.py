@@ -108,7 +108,7 @@ def test_pickle():
     assert repr(again) == repr(field) and "5 boxes of dimension 3 on 3 levels" in repr(field)
 
 
-def write_plotfile(folder, given, name="distance"):
+def write_plotfile(folder, given, name="distance", time=2.5):
     """A plotfile as AMReX writes it, of one field."""
 
     def text(low, shape):
@@ -116,7 +116,7 @@ def write_plotfile(folder, given, name="distance"):
         return "((%d,%d,%d) (%d,%d,%d) (0,0,0))" % (*low, *high)
 
     levels = 1 + max(level for level, _, _ in given)
-    header = f"HyperCLaw-V1.1\n1\n{name}\n3\n2.5\n{levels - 1}\n0 0 0\n1 1 1\n" + "2 " * (levels - 1)
+    header = f"HyperCLaw-V1.1\n1\n{name}\n3\n{time}\n{levels - 1}\n0 0 0\n1 1 1\n" + "2 " * (levels - 1)
     header += "\n" + " ".join(text((0, 0, 0), [N * 2**k] * 3) for k in range(levels))
     header += "\n" + "0 " * levels + "\n"
     header += "".join("%.17g %.17g %.17g\n" % ((1 / (N * 2**k),) * 3) for k in range(levels)) + "0\n0\n"
@@ -169,6 +169,36 @@ def test_plotfiles(tmp_path):
         nestgrid.load(folder)
 
 
+def moved(x, y, z):
+    return ball(x - 0.1, y, z)
+
+
+def test_plotfiles_are_frames(tmp_path):
+    """At the time of a file they have its surface, between two the one of the mean."""
+    write_plotfile(tmp_path / "plt0", boxes(ball), time=1)
+    write_plotfile(tmp_path / "plt1", boxes(moved), time=3)
+    paths = [tmp_path / "plt0", tmp_path / "plt1" / "Header"]
+    frames = nestgrid.load(paths)
+    assert frames.times == [1, 3] and frames.name == "distance" and len(frames) == 2
+    mean = nestgrid.Blocks(boxes(lambda *x: (ball(*x) + moved(*x)) / 2), spacing=[1 / N] * 3)
+    for each in (frames, pickle.loads(pickle.dumps(frames))):
+        for t, field in ((1, blocks()), (3, blocks(moved)), (2, mean)):
+            np.testing.assert_allclose(each.at(t).isosurface(0).vertices, field.isosurface(0).vertices, atol=1e-12)
+    assert nestgrid.load(paths, times=[0, 10]).times == [0, 10]
+    with pytest.raises(nestgrid.InvalidInput, match="times has 1 numbers for 2 files"):
+        nestgrid.load(paths, times=[0])
+    with pytest.raises(nestgrid.InvalidInput, match="ascend"):
+        nestgrid.load(paths[::-1])
+    with pytest.raises(nestgrid.InvalidInput, match="there are no paths"):
+        nestgrid.load([])
+    write_plotfile(tmp_path / "plt2", boxes(ball)[:3], time=5)
+    with pytest.raises(nestgrid.InvalidInput, match="plt2' has another grid than '.*plt0'"):
+        nestgrid.load([paths[0], tmp_path / "plt2"])
+    (tmp_path / "x.vti").write_text("")
+    with pytest.raises(nestgrid.InvalidInput, match="plotfiles or of boxes of cells, which '.*x.vti' is not"):
+        nestgrid.load([paths[0], tmp_path / "x.vti"])
+
+
 TOOLS = os.path.join(os.path.dirname(__file__), "..", "..", "tools")
 
 
@@ -184,6 +214,7 @@ def amr_files(tmp_path_factory):
     finally:
         sys.path.remove(TOOLS)
     make_amr_files.write_all(str(folder), 3, 0.5)
+    make_amr_files.write_all(str(folder), 3, 1, "later_")
     make_amr_files.write_all(str(folder), 2, 0, "plane_")
     return folder
 
@@ -205,6 +236,102 @@ def test_formats_of_codes_have_one_surface(amr_files):
         place = nestgrid.load(amr_files / name, "plac")
         points = np.random.default_rng(1).uniform(0, 1, (50, 3))
         np.testing.assert_allclose(place.probe(points), points[:, 0], atol=1e-12, err_msg=name)
+
+
+def test_trees_have_the_surface_of_boxes(amr_files):
+    expected = nestgrid.load(amr_files / "chombo.hdf5", "dist").isosurface(0)
+    field = nestgrid.load(amr_files / "trees.htg", "dist")
+    assert field.name == "dist" and field.dimension == 3
+    surface = field.isosurface(0)
+    assert set(edges(surface).values()) == {2}
+    np.testing.assert_allclose(
+        np.sort(surface.vertices, axis=0), np.sort(expected.vertices, axis=0), atol=1e-12
+    )
+    points = np.random.default_rng(1).uniform(0, 1, (50, 2))
+    plane = nestgrid.load(amr_files / "plane_trees.htg", "plac")
+    np.testing.assert_allclose(plane.probe(points), points[:, 0], atol=1e-12)
+    np.testing.assert_array_equal(
+        pickle.loads(pickle.dumps(field)).isosurface(0).vertices, surface.vertices
+    )
+    with pytest.raises(nestgrid.InvalidInput, match="several fields, choose one by array"):
+        nestgrid.load(amr_files / "trees.htg")
+    with pytest.raises(nestgrid.InvalidInput, match="did you mean 'dist'"):
+        nestgrid.load(amr_files / "trees.htg", "dits")
+    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes of cells"):
+        nestgrid.load(amr_files / "trees.htg", "dist", rule="means")
+    with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
+        nestgrid.load(amr_files / "trees.htg", "dist", component=0)
+    (amr_files / "cut.htg").write_bytes((amr_files / "trees.htg").read_bytes()[:-9])
+    with pytest.raises(nestgrid.IoError, match="cut.htg is truncated"):
+        nestgrid.load(amr_files / "cut.htg", "dist")
+
+
+def test_masked_and_ghost_trees(tmp_path):
+    """What is masked or belongs to another process is not drawn; trees by three are refused."""
+    pytest.importorskip("vtkmodules.vtkIOXML")
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk
+
+    def grid_of(factor=2, ghosts=None, mask=None):
+        grid = vtk.vtkHyperTreeGrid()
+        grid.SetDimensions([3, 3, 3])
+        grid.SetBranchFactor(factor)
+        for put in (grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates):
+            put(numpy_to_vtk(np.array([0.0, 1.0, 3.0]), deep=True))
+        cursor = vtk.vtkHyperTreeGridNonOrientedCursor()
+        count = 0
+        for tree in range(8):
+            grid.InitializeNonOrientedCursor(cursor, tree, True)
+            cursor.SetGlobalIndexStart(count)
+            count += 1
+            if tree == 0:
+                cursor.SubdivideLeaf()
+                count += factor**3
+        places = np.arange(float(count))
+        for name, numbers in (("number", places), ("vtkGhostType", ghosts)):
+            if numbers is not None:
+                array = numpy_to_vtk(np.array(numbers), deep=True)
+                array.SetName(name)
+                grid.GetCellData().AddArray(array)
+        if mask is not None:
+            bits = vtk.vtkBitArray()
+            for each in mask:
+                bits.InsertNextValue(int(each))
+            grid.SetMask(bits)
+        writer = vtk.vtkXMLHyperTreeGridWriter()
+        writer.SetDataModeToBinary()
+        writer.SetFileName(str(tmp_path / "x.htg"))
+        writer.SetInputDataObject(grid)
+        assert writer.Write()
+        return nestgrid.load(tmp_path / "x.htg", "number")
+
+    last = np.arange(16) == 15  # the last tree
+    whole = grid_of()
+    assert np.isfinite(whole.probe([[2.5, 2.5, 2.5]])).all()
+    for field in (grid_of(mask=last), grid_of(ghosts=last.astype(np.uint8))):
+        assert np.isnan(field.probe([[2.5, 2.5, 2.5]])).all()
+        assert np.isfinite(field.probe([[0.5, 0.5, 2.5]])).all()
+    with pytest.raises(nestgrid.IoError, match="divided by 3 in dimension 3: trees by two are read"):
+        grid_of(3)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_files_of_codes_are_frames(amr_files, name):
+    paths = [amr_files / name, amr_files / f"later_{name}"]
+    frames = nestgrid.load(paths, "dist", **({"times": [0.5, 1]} if name == "amr.vthb" else {}))
+    assert frames.times == [0.5, 1] and frames.name == "dist", name
+    assert "80 boxes of dimension 3 on 3 levels" in repr(frames)
+    expected = [nestgrid.load(path, "dist").isosurface(0).vertices for path in paths]
+    for each in (frames, pickle.loads(pickle.dumps(frames))):
+        for t, vertices in zip(frames.times, expected):
+            np.testing.assert_array_equal(each.at(t).isosurface(0).vertices, vertices)
+    assert len(frames.at(0.75).isosurface(0).vertices) > 100
+
+
+def test_frames_of_codes_that_do_not_fit(amr_files):
+    assert nestgrid.load([amr_files / "amr.vthb", amr_files / "later_amr.vthb"], "dist").times == [0, 1]
+    with pytest.raises(nestgrid.InvalidInput, match="plane_chombo.hdf5' has other dimensions than '.*chombo.hdf5'"):
+        nestgrid.load([amr_files / "chombo.hdf5", amr_files / "plane_chombo.hdf5"], "dist", times=[0, 1])
 
 
 def test_rules_of_formats_of_codes(amr_files):

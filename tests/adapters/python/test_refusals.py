@@ -52,6 +52,8 @@ STATES = {
     "boxes that cover each other": lambda: nestgrid.Blocks([(0, (0, 0, 0), CUBE)] * 2),
     "a rule that does not exist": lambda: nestgrid.Blocks([(0, (0, 0, 0), CUBE)], rule="centre"),
     "no frames": lambda: nestgrid.Frames([]),
+    "frames of files of samples": lambda: nestgrid.load(["a.nrrd", "b.nrrd"]),
+    "times for one file": lambda: nestgrid.load(["a.vthb"], times=[0, 1]),
     "frames of several sizes": lambda: nestgrid.Frames([CUBE, CUBE[:2].copy()]),
     "times that do not ascend": lambda: nestgrid.Frames([CUBE, CUBE], [1, 0]),
     "a time outside the frames": lambda: nestgrid.Frames([CUBE, CUBE], [0, 1]).at(2),

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: the nestgrid authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The leaves of VTK's hyper tree grids: for load()'s reader, a program of its own, and for ParaView."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Trees:
+    """What Octree() takes; values of the leaves are numbers_of_cells[index]."""
+
+    leaves: np.ndarray
+    index: np.ndarray
+    masked: np.ndarray
+    max_level: int
+    coordinates: list[np.ndarray]
+
+
+def trees_of(grid: Any) -> Trees:
+    """The leaves of a grid; masked cells and ghost cells are masked.
+
+    Raises ValueError with a sentence where it is no octree, or no quadtree of constant z.
+    """
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    points = np.zeros(3, np.int64)
+    grid.GetDimensions(points)
+    flat = points[2] == 1
+    if grid.GetBranchFactor() != 2 or (points[:2] < 2).any():
+        raise ValueError(
+            f"its trees are divided by {grid.GetBranchFactor()} in dimension "
+            f"{grid.GetDimension()}: trees by two are read, in space or in a plane of constant z"
+        )
+    max_level = grid.GetNumberOfLevels() - 1
+    dimension = 2 if flat else 3
+    parts = [_leaves(grid, i, max_level, dimension) for i in range(grid.GetMaxNumberOfTrees())]
+    found = [part for part in parts if part]
+    if not found:
+        raise ValueError("it has no trees")
+    leaves, index = (np.concatenate(each) for each in zip(*found))
+    masked = np.zeros(len(index), bool)
+    hidden = [_numbers(grid.GetMask())] if grid.HasMask() else []
+    if grid.GetGhostCells() is not None:
+        hidden.append(vtk_to_numpy(grid.GetGhostCells()))
+    for each in hidden:
+        if len(each) <= index.max():
+            raise ValueError("its mask or its ghost array has fewer entries than cells")
+        masked |= each[index] != 0
+    axes = (grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates())
+    coordinates = [vtk_to_numpy(axis).astype(float) for axis in axes[:dimension]]
+    return Trees(leaves, index, masked, max_level, coordinates)
+
+
+def _numbers(bits: Any) -> np.ndarray:
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+
+    numbers = vtkUnsignedCharArray()
+    numbers.DeepCopy(bits)
+    return vtk_to_numpy(numbers)
+
+
+def _leaves(
+    grid: Any, number: int, max_level: int, dimension: int
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Leaves of one tree, (n, dimension + 1), and their places in the arrays of cells."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import reference, vtkBitArray, vtkIdList, vtkTypeInt64Array
+
+    tree = grid.GetTree(number)
+    if tree is None:
+        return None
+    corner = [reference(0) for _ in range(3)]
+    grid.GetLevelZeroCoordinatesFromIndex(number, *corner)
+    low = np.array([[int(x) << max_level for x in corner[:dimension]]], np.int64)
+    counts, splits, ids = vtkTypeInt64Array(), vtkBitArray(), vtkIdList()
+    # Below masked cells nothing is drawn: they are leaves.
+    mask = grid.GetMask() if grid.HasMask() else None
+    tree.ComputeBreadthFirstOrderDescriptor(mask, counts, splits, ids)
+    index = np.array([ids.GetId(i) for i in range(ids.GetNumberOfIds())], np.int64)
+    is_split = np.zeros(len(index), bool)
+    is_split[: splits.GetNumberOfTuples()] = _numbers(splits)
+    leaves = []
+    begin = 0
+    children = np.array([[c >> d & 1 for d in range(dimension)] for c in range(1 << dimension)])
+    for level, count in enumerate(vtk_to_numpy(counts)):
+        here = is_split[begin : begin + count]
+        begin += count
+        leaf = low[~here]
+        leaves.append(np.column_stack([leaf, np.full(len(leaf), level)]))
+        half = 1 << (max_level - level - 1) if here.any() else 0
+        low = (low[here, None] + children * half).reshape(-1, dimension)
+    return np.concatenate(leaves), index[~is_split]
