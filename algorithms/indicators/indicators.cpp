@@ -98,7 +98,7 @@ void IndicatorKind::require(const HierarchyFacts& facts) const {
                        std::string(needed_grids) + ": on this one it is 0 everywhere");
 }
 
-const char* detail::unit_name(ThresholdUnit unit) {
+const char* unit_name(ThresholdUnit unit) {
     switch (unit) {
         case ThresholdUnit::data:
             return "data";

@@ -170,7 +170,7 @@ Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double
 
 }  // namespace
 
-double detail::default_error(const HighOrder& data) {
+double default_error(const HighOrder& data) {
     const double range = engine::range_of(data);
     return range > 0 ? 1e-3 * range : 1;
 }
@@ -181,7 +181,7 @@ Projection with_error(const Prerolls& prerolls, Projection projection, const Wor
     if (data == nullptr) return projection;
     if (projection.draws_everything()) {
         projection.indicator = "error";
-        projection.threshold = detail::default_error(*data);
+        projection.threshold = default_error(*data);
     } else if (projection.indicator == "offset" && !projection.threshold) {
         projection.indicator = "error";  // within a number of triangles, or by a lens alone
     }

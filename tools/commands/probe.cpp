@@ -73,8 +73,7 @@ std::vector<Point> read_points(const fs::path& path) {
 /// Values within the error that nobody asks for.
 nestgrid::ProbeResult probe_within(const nestgrid::HighOrder& data,
                                    const std::vector<Point>& points) {
-    const nestgrid::VirtualRefinement fine(data,
-                                           {.tolerance = nestgrid::detail::default_error(data)});
+    const nestgrid::VirtualRefinement fine(data, {.tolerance = nestgrid::default_error(data)});
     return nestgrid::probe(fine, points, under(fine.criterion(), fine.bounds()));
 }
 

@@ -187,7 +187,7 @@ private:
                     within.threshold = error;
                     return count(within, most);
                 },
-                nestgrid::detail::default_error(*data), max_triangles, data->least_tolerance());
+                nestgrid::default_error(*data), max_triangles, data->least_tolerance());
         }
         const nestgrid::Criteria& criteria = moment_.criteria();
         const nestgrid::Bounds& bounds = criteria.bounds();
@@ -283,7 +283,7 @@ void draw_polynomials(const nestgrid::HighOrder& data, const Moment& moment,
     }
     const bool by_default = asked.empty() && !request.lens;
     if (asked.empty()) asked.push_back(within);
-    if (by_default) asked.back().threshold = nestgrid::detail::default_error(data);
+    if (by_default) asked.back().threshold = nestgrid::default_error(data);
     for (const Projection& projection : asked) {
         Drawn drawn;
         drawn.by_default = by_default;

@@ -63,7 +63,7 @@ FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
                                         const Criterion& criterion) const {
     const bool normals = request_.normals != NormalType::none;
     const bool quickly = request_.moving || request_.collapses();
-    IsosurfaceOptions options = detail::watched({.elements = request_.outlines});
+    IsosurfaceOptions options = watched({.elements = request_.outlines});
     options.normals = normals && !quickly;
     // Linear cuts keep an error.
     const bool keeps = request_.error > 0 || request_.indicator == "deviation";
@@ -94,7 +94,7 @@ void FrameDrawing::collapse_edges(FramePart& part, const Hierarchy<Real>& hierar
 template <class Real>
 Slice FrameDrawing::draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const {
     Slice drawn = slice(hierarchy, *plane_, under(criterion, *criteria_.bounds),
-                        detail::watched({.elements = request_.outlines}), {executor_});
+                        watched({.elements = request_.outlines}), {executor_});
     if (drawn.cancelled) throw FrameAbandoned{};
     return drawn;
 }

@@ -53,7 +53,7 @@ private:
     void collapse_edges(FramePart& part, const Hierarchy<Real>& hierarchy) const;
     template <class Real>
     Slice draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const;
-    IsosurfaceOptions detail::watched(IsosurfaceOptions options) const;
+    IsosurfaceOptions watched(IsosurfaceOptions options) const;
 
     const FrameRequest& request_;
     const FieldOnGrid& field_;

@@ -112,8 +112,7 @@ void bind_requests(py::module_& m) {
     m.def("indicators", [] {
         std::vector<std::tuple<std::string, std::string, std::string, bool>> all;
         for (const IndicatorKind& kind : indicators()) {
-            all.emplace_back(kind.name, kind.measures, detail::unit_name(kind.unit),
-                             kind.of_level_sets);
+            all.emplace_back(kind.name, kind.measures, unit_name(kind.unit), kind.of_level_sets);
         }
         return all;
     });

@@ -23,13 +23,9 @@
 
 namespace nestgrid {
 
-namespace detail {
-
 /// The error within which polynomials are drawn where nobody asks for one: a thousandth of their
 /// range.
 double default_error(const HighOrder& data);
-
-}  // namespace detail
 
 /// The projection by which a front end draws a field: this one, but of a field of higher degree
 /// always one within an error. That is default_error() where the projection asks for nothing, the

@@ -22,12 +22,8 @@ enum class ThresholdUnit : std::uint8_t {
     length,  ///< units of length of the grid
     none,    ///< pure numbers
 };
-namespace detail {
-
 /// "data", "length" or "none".
 const char* unit_name(ThresholdUnit unit);
-
-}  // namespace detail
 
 /// What an indicator is made of, beside the field.
 struct IndicatorInput {
