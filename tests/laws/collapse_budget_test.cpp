@@ -7,6 +7,7 @@
 
 #include <nestgrid/adapters/bisection.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurface_within.hpp>
 
 #include "families.hpp"
 #include "refusal.hpp"

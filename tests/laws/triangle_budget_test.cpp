@@ -9,7 +9,9 @@
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/algorithms/blended.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
+#include <nestgrid/algorithms/count_triangles.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/least_threshold.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/numerical_indicator.hpp>
