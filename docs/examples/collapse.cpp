@@ -95,6 +95,6 @@ int main() {
     const bool keeps = measured.value.greatest <= error && collapsed.error <= error &&
                        std::max(off.distance.greatest, off.back.greatest) <= distance &&
                        std::max(left.distance.greatest, left.back.greatest) <= distance &&
-                       found.triangles <= 2000;
+                       few.surface.simplices.size() <= 2000;
     return report.closed() && report.manifold() && keeps ? 0 : 1;
 }
