@@ -9,6 +9,8 @@
 
 #include <nestgrid/adapters/lattice_octree.hpp>
 #include <nestgrid/adapters/linear_octree.hpp>
+#include <nestgrid/algorithms/cell_data.hpp>
+#include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/check_grid.hpp>
 #include <nestgrid/detail/erase.hpp>
 #include <walk/walk.hpp>
@@ -138,8 +140,11 @@ struct LinearSample {
     std::vector<double> values;
 
     explicit LinearSample(unsigned seed)
-        : coarse{dim == 2 ? shaken(quadrilaterals(2), seed, 0.1) : shaken(hexahedra(2), seed, 0.1)},
-          trees{random_trees<dim>(coarse.element_count(), seed)} {
+        : LinearSample(
+              dim == 2 ? shaken(quadrilaterals(2), seed, 0.1) : shaken(hexahedra(2), seed, 0.1),
+              seed) {}
+    LinearSample(CoarseGrid grid_of_trees, unsigned seed)
+        : coarse{std::move(grid_of_trees)}, trees{random_trees<dim>(coarse.element_count(), seed)} {
         std::map<std::array<long, 3>, int> known;  // nodes by their place, rounded
         for (std::size_t t = 0; t < trees.size(); ++t) {
             const auto corner = coarse.positions(t);
@@ -208,6 +213,91 @@ TEST(LinearOctree, WalksUnbalancedTreesInPlace) {
         check_linear<2>(seed);
         check_linear<3>(seed);
     }
+}
+
+/// Trees of a square or cube, tree t turned t times about z.
+template <int dim>
+CoarseGrid turned_trees() {
+    const CoarseGrid straight = dim == 2 ? quadrilaterals(2) : hexahedra(2);
+    CoarseGrid turned;
+    turned.dimension = dim;
+    turned.nodes = straight.nodes;
+    for (std::size_t t = 0; t < straight.element_count(); ++t) {
+        const auto corners = straight.element(t);
+        std::vector<std::uint32_t> again(corners.begin(), corners.end());
+        for (std::size_t turn = 0; turn < t % 4; ++turn) {
+            for (std::size_t k = 0; k < again.size(); k += 4) {
+                std::array quarter{again[k + 2], again[k], again[k + 3], again[k + 1]};
+                std::copy(quarter.begin(), quarter.end(), again.begin() + static_cast<long>(k));
+            }
+        }
+        turned.add(straight.shapes[t], again);
+    }
+    return turned;
+}
+
+/// Two corners of leaves have one key where they are one node, whatever the trees.
+template <int dim>
+void expect_keys_of_nodes(const LinearSample<dim>& sample) {
+    const LinearOctree<dim, Octant> grid = sample.grid();
+    std::map<NodeKey, int> node_of;
+    std::map<int, NodeKey> key_of;
+    const auto visit = [&](const auto& e, const auto& again) -> void {
+        std::array<NodeKey, 1U << dim> keys;
+        grid.corner_keys(e, keys);
+        if (grid.split(e) == nullptr) {
+            for (std::size_t c = 0; c < keys.size(); ++c) {
+                const int node = sample.element_nodes[keys.size() * grid.leaf_index(e) + c];
+                ASSERT_EQ(node_of.try_emplace(keys[c], node).first->second, node);
+                ASSERT_EQ(key_of.try_emplace(node, keys[c]).first->second, keys[c]);
+            }
+            return;
+        }
+        std::array<typename LinearOctree<dim, Octant>::Element, 1U << dim> children;
+        grid.children(e, children);
+        for (const auto& child : children) again(child, again);
+    };
+    for (std::size_t t = 0; t < grid.coarse_count(); ++t) visit(grid.coarse(t).element, visit);
+    EXPECT_EQ(node_of.size(), sample.values.size());
+}
+
+/// Data of cells that are those of a linear function, in trees that are turned.
+template <int dim>
+void expect_linear_cells(const LinearSample<dim>& sample) {
+    using Grid = LinearOctree<dim, Octant>;
+    const Grid grid = sample.grid();
+    const auto linear = [](const Point& x) { return 0.3 * x[0] + 0.7 * x[1] - 0.4 * x[2]; };
+    std::vector<double> cells;
+    for (std::size_t t = 0; t < sample.trees.size(); ++t) {
+        const auto corner = sample.coarse.positions(t);
+        for (const Octant& o : sample.trees[t]) {
+            const int size = 1 << (depth - o.level);
+            const auto x = [&](int part) {
+                return LinearSample<dim>::place(
+                    corner, {o.x + part, o.y + part, dim == 3 ? o.z + part : 0});
+            };
+            cells.push_back(0.5 * (linear(x(0)) + linear(x(size))));
+        }
+    }
+    const CellAverages field(
+        grid, [&](const typename Grid::Element& leaf) { return cells[grid.leaf_index(leaf)]; });
+    const auto violation = check_grid(grid, field);
+    EXPECT_FALSE(violation) << violation->sentence;
+    const auto all = isosurface(grid, field, 0.32, Projection{}, {.verify = true});
+    EXPECT_GT(all.surface.simplices.size(), 20U);
+    for (const Point& x : all.surface.vertices) ASSERT_NEAR(linear(x), 0.32, 1e-12);
+}
+
+TEST(LinearOctree, NamesNodesForTreesThatAreTurned) {
+    expect_keys_of_nodes(LinearSample<2>(1));
+    expect_keys_of_nodes(LinearSample<3>(1));
+    expect_keys_of_nodes(LinearSample<2>(turned_trees<2>(), 2));
+    expect_keys_of_nodes(LinearSample<3>(turned_trees<3>(), 2));
+}
+
+TEST(LinearOctree, TakesDataOfCells) {
+    expect_linear_cells(LinearSample<2>(turned_trees<2>(), 1));
+    expect_linear_cells(LinearSample<3>(turned_trees<3>(), 1));
 }
 
 std::string sentence(const std::vector<Octant>& leaves, int levels = depth) {

@@ -44,6 +44,28 @@ for file in plane_amr.vthb plane_trees.htg plane_run_hdf5_plt_cnt_0000 plane_enz
     [ "$(value dimension)" = 2 ] || fail "info: $file: $(cat out)"
 done
 
+# Trees by threes, and of several sizes, are no boxes: they have the same sphere.
+for file in thirds.htg uneven.htg; do
+    run info "$file"
+    [ "$(value dimension)" = 3 ] && grep -qE '^ +0 +512$' out || fail "info: $file: $(cat out)"
+    grep -qE '^dist +1 +-0\.2[0-9]+ +0\.5[0-9]+$' out || fail "info: fields of $file: $(cat out)"
+    run isosurface "$file" --field dist --value 0 --threshold 0 --threshold 5e-3 -o s.vtp
+    [ "$(value open_edges | sort -u)" = 0 ] || fail "$file: open edges: $(cat out)"
+    awk -v area="$(value area | head -1)" 'BEGIN { exit !(area > 1.08 && area < 1.135) }' ||
+        fail "$file: a sphere of 0.36 pi has another area: $(cat out)"
+    run slice "$file" --field plac --axis x --at 0.4 --threshold 0
+    refused 1 "there is no field 'dits', only .*: did you mean 'dist'\?" \
+        isosurface "$file" --field dits --value 0
+    run isolines "plane_$file" --field dist --values 0 --threshold 0 -o l.vtp
+    awk -v a="$(value length)" -v b="$(head -1 all_lengths)" 'BEGIN { exit !(a > 0.99 * b && a < 1.01 * b) }' ||
+        fail "plane_$file has other lines: $(cat out)"
+    run isosurface "later_$file" --field dist --value 0 --threshold 1e-3 -o alone.vtp
+    run isosurface "$file" "later_$file" --field dist --value 0 --threshold 1e-3 --time 1 -o timed.vtp
+    cmp -s alone.vtp timed.vtp || fail "$file: the surface at the time of a file is another one"
+done
+refused 1 "'uneven.htg' has another grid than the first input" \
+    isosurface thirds.htg uneven.htg --field dist --value 0 --time 0.5
+
 # Between the times of two files the surface moves; at one of them it is that of the file.
 for pair in run_hdf5_plt_cnt_0000 enzo/data0000.hierarchy chombo.hdf5 athena.athdf; do
     run isosurface "later_$pair" --field dist --value 0 --threshold 1e-3 -o alone.vtp
@@ -63,6 +85,7 @@ refused 1 "'plane_chombo.hdf5' has 2 dimensions, not 3" \
     isosurface chombo.hdf5 plane_chombo.hdf5 --field dist --value 0 --time 0.5
 refused 1 "'amr.vthb' is no file of the format of the first one" \
     isosurface chombo.hdf5 amr.vthb --field dist --value 0 --time 0.5
+refused 1 "round_hdf5_plt_cnt_0000': it has cylindrical coordinates, not cartesian ones" info round_hdf5_plt_cnt_0000
 mv amr/amr_3.vti amr/gone.vti
 refused 1 "^nestgrid: 'amr.vthb': " info amr.vthb
 truncate -s 300000 athena.athdf

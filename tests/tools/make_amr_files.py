@@ -147,7 +147,49 @@ def write_htg(path: str, dim: int, fields: Fields) -> None:
     assert writer.Write()
 
 
-def write_flash(path: str, dim: int, fields: Fields, time: float = 0) -> None:
+def write_trees(path: str, corners: list[np.ndarray], factor: int, names: Fields, divide: Callable[[int, np.ndarray], bool]) -> None:
+    """A hyper tree grid with values at the centres of all cells.
+
+    corners: coordinates of the corners of trees, one array a direction; divide(level, centre)
+    """
+    dim = len(corners)
+    trees = vtk.vtkHyperTreeGrid()
+    trees.SetDimensions([len(x) for x in corners] + [1] * (3 - dim))
+    trees.SetBranchFactor(factor)
+    for d, put in enumerate((trees.SetXCoordinates, trees.SetYCoordinates, trees.SetZCoordinates)):
+        put(numpy_to_vtk(corners[d] if d < dim else np.zeros(1), deep=True))
+    cursor = vtk.vtkHyperTreeGridNonOrientedCursor()
+    centres: list[np.ndarray] = []
+
+    def write(level: int, low: np.ndarray, size: np.ndarray) -> None:
+        cursor.SetGlobalIndexFromLocal(len(centres))
+        centres.append(low + size / 2)
+        if not divide(level, low + size / 2):
+            return
+        cursor.SubdivideLeaf()
+        for c in range(factor**dim):
+            cursor.ToChild(c)
+            write(level + 1, low + size / factor * [c // factor**d % factor for d in range(dim)], size / factor)
+            cursor.ToParent()
+
+    counts = [len(x) - 1 for x in corners]
+    for tree in range(int(np.prod(counts))):
+        trees.InitializeNonOrientedCursor(cursor, tree, True)
+        at = [tree // int(np.prod(counts[:d])) % counts[d] for d in range(dim)]
+        low = np.array([x[i] for x, i in zip(corners, at)])
+        write(0, low, np.array([x[i + 1] for x, i in zip(corners, at)]) - low)
+    for name, f in names.items():
+        array = numpy_to_vtk(f(*np.array(centres).T), deep=True)
+        array.SetName(name)
+        trees.GetCellData().AddArray(array)
+    writer = vtk.vtkXMLHyperTreeGridWriter()
+    writer.SetDataModeToBinary()  # where it appends, it writes ranges over the first line
+    writer.SetFileName(path)
+    writer.SetInputDataObject(trees)
+    assert writer.Write()
+
+
+def write_flash(path: str, dim: int, fields: Fields, time: float = 0, geometry: str = "cartesian") -> None:
     blocks = blocks_of(dim)
     number = {block: i + 1 for i, block in enumerate(blocks)}  # from 1
     corners = list(itertools.product(range(2), repeat=dim))
@@ -192,7 +234,7 @@ def write_flash(path: str, dim: int, fields: Fields, time: float = 0) -> None:
         ends = {f"{a}{end}": float(e) for a in "xyz" for end, e in (("min", 0), ("max", 1))}
         scalars("real runtime parameters", ends, "<f8")
         scalars("logical runtime parameters", {"restart": 0}, "<i4")
-        text = np.array([(b"geometry".ljust(80), b"cartesian".ljust(80))], [("name", "S80"), ("value", "S80")])
+        text = np.array([(b"geometry".ljust(80), geometry.encode().ljust(80))], [("name", "S80"), ("value", "S80")])
         file["string runtime parameters"] = text
         file["string scalars"] = text
         file["gid"] = gid
@@ -340,9 +382,14 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     write_vthb(path("amr.vthb"), dim, fields)
     write_htg(path("trees.htg"), dim, fields)
     write_flash(path("run_hdf5_plt_cnt_0000"), dim, fields, time)
+    write_flash(path("round_hdf5_plt_cnt_0000"), dim, fields, time, "cylindrical")
     write_enzo(path("enzo"), dim, fields, time)
     write_chombo(path("chombo.hdf5"), dim, fields, time)
     write_athena(path("athena.athdf"), dim, fields, time)
+    even, uneven = [np.linspace(0, 1, 9)] * dim, [np.linspace(0, 1, 9) ** 1.3] * dim
+    near = lambda level, x: level < 2 and abs(ball(0.5)(*x)) < 0.1 / 3**level  # noqa: E731
+    write_trees(path("thirds.htg"), even, 3, fields, near)
+    write_trees(path("uneven.htg"), uneven, 2, fields, near)
 
 
 if __name__ == "__main__":

@@ -108,8 +108,20 @@ def whole(numbers: np.ndarray, path: str) -> list[int]:
     return [int(n) for n in rounded]
 
 
+def value_in(file: Any, rows: str, wanted: str) -> Any:
+    """The value of a name in FLASH's rows of names and values; None where there is none."""
+    for key, value in file[rows][()] if rows in file else []:
+        if key.decode().strip(" \0") == wanted:
+            return value
+    return None
+
+
 def read_flash(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
     """Blocks of one size, those that finer ones replace among them."""
+    geometry = value_in(file, "string runtime parameters", "geometry")
+    if geometry is not None and geometry.decode().strip(" \0") != "cartesian":
+        what = geometry.decode().strip(" \0")
+        raise Refused(f"{path} has {what} coordinates, not cartesian ones")
     names = [each.decode().strip() for each in np.ravel(file["unknown names"][()])]
     wanted = chosen(path, name, names)
     data = file[wanted.ljust(4)][()]
@@ -125,9 +137,7 @@ def read_flash(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
         low = np.array(whole((ends[block, :, 0] - start) / length * 2**level, path)) * size
         boxes.append((level, low.tolist(), data[block].T.reshape(size)))
     place = {"ratio": [2] * max(levels), "spacing": (length / size).tolist()}
-    scalars = file["real scalars"][()] if "real scalars" in file else []
-    times = [value for key, value in scalars if key.decode().strip(" \0") == "time"]
-    told_time = told(times[0] if times else None)
+    told_time = told(value_in(file, "real scalars", "time"))
     return boxes, place | {"origin": start.tolist(), "name": wanted} | told_time
 
 

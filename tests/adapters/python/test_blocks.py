@@ -365,6 +365,8 @@ def test_refusals_of_formats_of_codes(amr_files):
     np.testing.assert_allclose(second.range, [0, 1], atol=1e-12)
     with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
         load(amr_files / "chombo.hdf5", "dist", component=0)
+    with pytest.raises(nestgrid.IoError, match="has cylindrical coordinates, not cartesian ones"):
+        load(amr_files / "round_hdf5_plt_cnt_0000", "dist")
     (amr_files / "cut.athdf").write_bytes((amr_files / "athena.athdf").read_bytes()[:-9000])
     with pytest.raises(nestgrid.IoError, match="cut.athdf cannot be read"):
         load(amr_files / "cut.athdf", "dist")

@@ -16,38 +16,6 @@ using nestgrid::BlockGrid;
 using nestgrid::InvalidInput;
 namespace fs = std::filesystem;
 
-/// The number of a field of a file.
-std::size_t number_of(const BlockFile& file, const std::string& name) {
-    std::vector<nestgrid::NamedField> all;
-    for (const BlockFile::Field& each : file.fields) all.emplace_back().name = each.name;
-    const std::string chosen = field_named(all, name).name;
-    const auto at = std::ranges::find(file.fields, chosen, &BlockFile::Field::name);
-    return static_cast<std::size_t>(at - file.fields.begin());
-}
-
-/// \throw InvalidInput where a field has several numbers per cell and none of them is chosen, or
-/// the chosen one is not there
-int component_of(const BlockFile::Field& field, const Input& input) {
-    const auto& chosen = input.choice.component;
-    const std::string last = std::to_string(field.components - 1);
-    if (field.components == 1) {
-        if (!chosen) return 0;
-        throw InvalidInput("--component chooses nothing: '" + field.name +
-                           "' has one number per cell");
-    }
-    if (!chosen || static_cast<std::int64_t>(*chosen) >= field.components) {
-        throw InvalidInput("'" + field.name + "' has " + std::to_string(field.components) +
-                           " numbers per cell, not one: choose by --component, from 0 to " + last);
-    }
-    return static_cast<int>(*chosen);
-}
-
-/// \param cells as --cells says it
-nestgrid::CellRule rule_of(const std::string& cells) {
-    if (cells == "smooth") return nestgrid::CellRule::smooth;
-    return cells == "means" ? nestgrid::CellRule::sharp_means : nestgrid::CellRule::sharp_centres;
-}
-
 /// All cells of all boxes, by numbers.
 template <int dim>
 class CellNumbers {
@@ -160,14 +128,14 @@ InputField frames_of(std::vector<BlockFile> files, const Input& input, const Pat
     const std::shared_ptr<const BlockGrid<dim>> grid(kept, &kept->grid);
     const std::vector<double> times = times_of_frames(given, times_in(kept->files));
     const BlockFile& first = kept->files.front();
-    const std::size_t chosen = number_of(first, input.array);
+    const std::size_t chosen = number_of(first.fields, input.array);
     const std::string& name = first.fields[chosen].name;
     std::vector<Field> fields;
     std::vector<FieldPair<Field>> pairs;
     nestgrid::BlockArrays<dim, Real> first_arrays;
     bool any_missing = false;
     const auto add = [&](const BlockFile& file, const std::string& wanted, int component) {
-        BoxNumbers numbers = file.numbers(number_of(file, wanted), component);
+        BoxNumbers numbers = file.numbers(number_of(file.fields, wanted), component);
         kept->memory.push_back(std::move(numbers.memory));
         auto arrays = arrays_of<dim, Real>(numbers.arrays);
         any_missing = any_missing || is_leaf_missing(*grid, arrays);
@@ -177,7 +145,7 @@ InputField frames_of(std::vector<BlockFile> files, const Input& input, const Pat
     const bool has_other =
         std::ranges::find(first.fields, input.by, &BlockFile::Field::name) != first.fields.end();
     for (const BlockFile& file : kept->files) {
-        const int component = component_of(file.fields[number_of(file, name)], input);
+        const int component = component_of(file.fields[number_of(file.fields, name)], input);
         fields.push_back(add(file, name, component));
         if (has_other) pairs.emplace_back(fields.back(), add(file, input.by, 0));
     }
@@ -267,6 +235,34 @@ void report_blocks(const BlockFile& file, const fs::path& path, Report& report) 
 }
 
 }  // namespace
+
+std::size_t number_of(const std::vector<BlockFile::Field>& fields, const std::string& name) {
+    std::vector<nestgrid::NamedField> all;
+    for (const BlockFile::Field& each : fields) all.emplace_back().name = each.name;
+    const std::string chosen = field_named(all, name).name;
+    const auto at = std::ranges::find(fields, chosen, &BlockFile::Field::name);
+    return static_cast<std::size_t>(at - fields.begin());
+}
+
+int component_of(const BlockFile::Field& field, const Input& input) {
+    const auto& chosen = input.choice.component;
+    const std::string last = std::to_string(field.components - 1);
+    if (field.components == 1) {
+        if (!chosen) return 0;
+        throw InvalidInput("--component chooses nothing: '" + field.name +
+                           "' has one number per cell");
+    }
+    if (!chosen || static_cast<std::int64_t>(*chosen) >= field.components) {
+        throw InvalidInput("'" + field.name + "' has " + std::to_string(field.components) +
+                           " numbers per cell, not one: choose by --component, from 0 to " + last);
+    }
+    return static_cast<int>(*chosen);
+}
+
+nestgrid::CellRule rule_of(const std::string& cells) {
+    if (cells == "smooth") return nestgrid::CellRule::smooth;
+    return cells == "means" ? nestgrid::CellRule::sharp_means : nestgrid::CellRule::sharp_centres;
+}
 
 InputField block_field(std::vector<BlockFile> files, const Input& input, const Paths& paths,
                        const std::vector<double>& given) {

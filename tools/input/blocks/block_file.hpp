@@ -108,6 +108,16 @@ InputField block_field(std::vector<BlockFile> files, const Input& input,
                        const std::vector<std::filesystem::path>& paths,
                        const std::vector<double>& given);
 
+/// The number of a field; an empty name stands for the only one.
+/// \throw nestgrid::InvalidInput where there is none
+std::size_t number_of(const std::vector<BlockFile::Field>& fields, const std::string& name);
+/// The component that an input chooses.
+/// \throw nestgrid::InvalidInput where a field has several numbers per cell and none of them is
+/// chosen, or the chosen one is not there
+int component_of(const BlockFile::Field& field, const Input& input);
+/// \param cells as --cells says it
+nestgrid::CellRule rule_of(const std::string& cells);
+
 /// Says what is in a file: levels, boxes, fields and their ranges in leaves.
 /// \throw nestgrid::InvalidInput where its boxes are no hierarchy
 void describe_blocks(const BlockFile& file, const std::filesystem::path& path, Report& report);

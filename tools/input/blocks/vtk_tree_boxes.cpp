@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/blocks/vtk_tree_boxes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <vtkBitArray.h>
@@ -89,35 +90,43 @@ private:
     vtkHyperTree* tree_;
 };
 
-/// \throw InvalidInput where trees have several sizes
+/// Whether the coordinates of trees have one distance.
+bool is_even(vtkDataArray& along) {
+    const vtkIdType trees = along.GetNumberOfTuples() - 1;
+    const double begin = along.GetTuple1(0);
+    const double step = (along.GetTuple1(trees) - begin) / static_cast<double>(trees);
+    for (vtkIdType i = 0; i <= trees; ++i) {
+        const double off = along.GetTuple1(i) - begin - static_cast<double>(i) * step;
+        if (!(std::abs(off) <= 1e-3 * std::abs(step))) return false;
+    }
+    return true;
+}
+
+std::array<vtkDataArray*, 3> coordinates_of(vtkHyperTreeGrid& grid) {
+    return {grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates()};
+}
+
 void place_trees(TreeBoxes& out) {
-    vtkDataArray* const along[]{out.grid->GetXCoordinates(), out.grid->GetYCoordinates(),
-                                out.grid->GetZCoordinates()};
     for (std::size_t d = 0; d < static_cast<std::size_t>(out.dimension); ++d) {
-        const vtkIdType trees = along[d]->GetNumberOfValues() - 1;
-        const double begin = along[d]->GetTuple1(0);
-        const double step = (along[d]->GetTuple1(trees) - begin) / static_cast<double>(trees);
-        for (vtkIdType i = 0; i <= trees; ++i) {
-            const double off = along[d]->GetTuple1(i) - begin - static_cast<double>(i) * step;
-            if (std::abs(off) <= 1e-3 * std::abs(step)) continue;
-            throw InvalidInput("its trees have several sizes in direction " + std::to_string(d) +
-                               ": trees of one size are read");
-        }
-        out.blocks.origin[d] = begin;
-        out.blocks.spacing[d] = step;
+        vtkDataArray& along = *coordinates_of(*out.grid)[d];
+        const vtkIdType trees = along.GetNumberOfTuples() - 1;
+        out.blocks.origin[d] = along.GetTuple1(0);
+        out.blocks.spacing[d] =
+            (along.GetTuple1(trees) - out.blocks.origin[d]) / static_cast<double>(trees);
     }
 }
 
 }  // namespace
 
+bool trees_have_one_size(vtkHyperTreeGrid& grid) {
+    const auto along = coordinates_of(grid);
+    return std::ranges::all_of(
+        along, [](vtkDataArray* each) { return each->GetNumberOfTuples() < 2 || is_even(*each); });
+}
+
 TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid) {
     const unsigned* const points = grid->GetDimensions();
     TreeBoxes out{grid, points[2] == 1 ? 2 : 3, {}, {}};
-    if (grid->GetBranchFactor() != 2 || points[0] < 2 || points[1] < 2) {
-        throw InvalidInput("its trees are divided by " + std::to_string(grid->GetBranchFactor()) +
-                           " in dimension " + std::to_string(grid->GetDimension()) +
-                           ": trees by two are read, in space or in a plane of constant z");
-    }
     place_trees(out);
     const vtkIdType cells = grid->GetGlobalNodeIndexMax() + 1;
     const vtkUnsignedCharArray* const ghosts = grid->GetGhostCells();

@@ -19,6 +19,9 @@ struct TreeBoxes {
     std::vector<std::vector<std::vector<vtkIdType>>> cells;  // by level and box, x fastest
 };
 
-/// \throw nestgrid::InvalidInput for trees of several sizes, by threes, or in another plane than
-/// one of constant z
+/// Whether all trees are as long in each direction.
+bool trees_have_one_size(vtkHyperTreeGrid& grid);
+
+/// \param grid of trees of one size that are divided by two, in space or in a plane of constant z
+/// \throw nestgrid::InvalidInput where its mask or its ghost array is too short
 TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hyper tree grids of VTK (.htg), which VTK reads in child processes.
+// Hyper tree grids of VTK (.htg), which VTK reads in child processes. Where they are boxes of cells
+// they are drawn as such, otherwise as trees.
 #include <limits>
 #include <tuple>
 
@@ -12,7 +13,9 @@
 #include "input/blocks/read_blocks.hpp"
 #include "input/blocks/vtk_blocks.hpp"
 #include "input/blocks/vtk_tree_boxes.hpp"
+#include "input/blocks/vtk_tree_records.hpp"
 #include "input/end_checks.hpp"
+#include "input/input_file.hpp"
 
 namespace {
 
@@ -46,16 +49,7 @@ BoxNumbers numbers_of(const TreeBoxes& trees, vtkDataArray& data, int component)
 }
 
 BlockFile open_htg(const fs::path& path) {
-    check_xml_end(path);
-    const auto grid = read_quietly<vtkHyperTreeGrid>([&] {
-        const vtkNew<vtkXMLHyperTreeGridReader> reader;
-        if (reader->CanReadFile(path.c_str()) == 0) {
-            throw InvalidInput("it is no file of VTK's hyper tree grids");
-        }
-        reader->SetFileName(path.c_str());
-        reader->Update();
-        return vtkSmartPointer<vtkDataObject>(reader->GetOutputDataObject(0));
-    });
+    const auto grid = read_htg(path);
     const auto trees = std::make_shared<const TreeBoxes>(tree_boxes(grid));
     BlockFile file;
     file.dimension = trees->dimension;
@@ -76,11 +70,50 @@ BlockFile open_htg(const fs::path& path) {
     return file;
 }
 
+double seconds_for(const Input& input, const fs::path& path) {
+    require_file(path);
+    const Format* const format = format_of(path);
+    if (format == nullptr || format != format_of("x.htg")) {
+        throw InvalidInput("'" + path.string() + "' is no file of the format of the first one");
+    }
+    return input.read_limit > 0 ? input.read_limit : reading_time(bytes_to_read(path, *format));
+}
+
+InputField read_trees(const Input& input, const Paths& paths, const std::vector<double>& times) {
+    double seconds = 0;
+    for (const fs::path& path : paths) seconds = std::max(seconds, seconds_for(input, path));
+    if (tree_head(paths.front(), seconds).holds_boxes) {
+        return read_blocks<open_htg>(input, paths, times);
+    }
+    return tree_field(input, paths, times, seconds);
+}
+
+void describe_htg(const fs::path& path, Report& report) {
+    Input input;
+    input.path = path;
+    const double seconds = seconds_for(input, path);
+    if (tree_head(path, seconds).holds_boxes) return describe_blocks<open_htg>(path, report);
+    describe_trees(path, seconds, report);
+}
+
 const RegisteredFormat htg({.name = "VTK hyper tree grid",
                             .endings = {".htg"},
                             .holds = "trees of cells, several fields",
                             .options = {"--array", "--cells", "--component", "--read-limit"},
-                            .read_field = read_blocks<open_htg>,
-                            .describe = describe_blocks<open_htg>});
+                            .read_field = read_trees,
+                            .describe = describe_htg});
 
 }  // namespace
+
+vtkSmartPointer<vtkHyperTreeGrid> read_htg(const fs::path& path) {
+    check_xml_end(path);
+    return read_quietly<vtkHyperTreeGrid>([&] {
+        const vtkNew<vtkXMLHyperTreeGridReader> reader;
+        if (reader->CanReadFile(path.c_str()) == 0) {
+            throw InvalidInput("it is no file of VTK's hyper tree grids");
+        }
+        reader->SetFileName(path.c_str());
+        reader->Update();
+        return vtkSmartPointer<vtkDataObject>(reader->GetOutputDataObject(0));
+    });
+}

@@ -6,6 +6,8 @@
 //
 // Invariants, checked once: the leaves of every tree are aligned to their level, sorted, and fill
 // the tree without gap or overlap. They may differ by any number of levels.
+// A node is named by where it lies: inside a tree by the place in it, on the border of trees by the
+// coarse nodes around it and its weights, so that trees agree about it however they are turned.
 #pragma once
 
 #include <algorithm>
@@ -92,7 +94,34 @@ public:
         }
     }
 
+    void corner_keys(const Element& e, std::span<NodeKey> out) const {
+        const std::size_t tree = tree_of(e);
+        const Place low = place_of(tree, e);
+        const std::uint64_t width = std::uint64_t{1} << (max_level_ - e.level);
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            Place node = low;
+            for (std::size_t d = 0; d < node.size(); ++d) node[d] += (k >> d & 1U) * width;
+            out[k] = key(tree, node);
+        }
+    }
+    void new_keys(const Element& e, std::span<NodeKey> out) const {
+        const std::size_t tree = tree_of(e);
+        const Place low = place_of(tree, e);
+        const std::uint64_t half = std::uint64_t{1} << (max_level_ - e.level - 1);
+        for (std::size_t n = 0; n < out.size(); ++n) {
+            const auto [child, corner] = rule_->new_corner[n];
+            Place node = low;
+            for (std::size_t d = 0; d < node.size(); ++d) {
+                node[d] +=
+                    ((std::size_t{child} >> d & 1U) + (std::size_t{corner} >> d & 1U)) * half;
+            }
+            out[n] = key(tree, node);
+        }
+    }
+
     // What fields need.
+    /// The number of a leaf in the whole array.
+    std::size_t leaf_index(const Element& leaf) const { return leaf.first; }
     std::size_t leaf_count() const { return first_.back(); }
     /// The leaf in a corner of an element.
     std::size_t corner_leaf(Element e, std::size_t corner) const {
@@ -108,6 +137,36 @@ public:
     }
 
 private:
+    using Place = std::array<std::uint64_t, static_cast<std::size_t>(dim)>;  // in finest cells
+
+    /// Of the first corner of an element, where its first leaf lies.
+    Place place_of(std::size_t tree, const Element& e) const {
+        const LeafType& leaf = trees_[tree][e.first - first_[tree]];
+        Place place;
+        for (std::size_t d = 0; d < place.size(); ++d) place[d] = coordinate(leaf, d);
+        return place;
+    }
+    NodeKey key(std::size_t tree, const Place& node) const {
+        const std::uint64_t width = std::uint64_t{1} << max_level_;
+        bool is_inside = true;
+        NodeKey inside = detail::mix(tree);
+        for (const std::uint64_t x : node) {
+            is_inside = is_inside && 0 < x && x < width;
+            inside = detail::mix(inside + x);
+        }
+        if (is_inside) return inside;
+        NodeKey sum = 0;  // in any order, for trees number their corners in any order
+        const auto corners = coarse_.element(tree);
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            std::uint64_t weight = 1;
+            for (std::size_t d = 0; d < node.size(); ++d) {
+                weight *= (k >> d & 1U) != 0 ? node[d] : width - node[d];
+            }
+            if (weight != 0) sum += detail::mix(detail::mix(NodeKey{corners[k]} + 1) + weight);
+        }
+        return sum;
+    }
+
     static std::uint64_t coordinate(const LeafType& leaf, std::size_t d) {
         if (d == 0) return static_cast<std::uint64_t>(leaf.x);
         if (d == 1) return static_cast<std::uint64_t>(leaf.y);

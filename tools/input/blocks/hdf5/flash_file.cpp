@@ -5,6 +5,7 @@
 // from 1, and its bounding box.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "input/blocks/hdf5/block_forest.hpp"
 #include "input/blocks/read_blocks.hpp"
@@ -14,31 +15,50 @@ namespace {
 using nestgrid::InvalidInput;
 namespace fs = std::filesystem;
 
-/// Scalars are rows of a name and a value.
-struct Scalar {
-    std::array<char, 80> name;
-    double value;
+using FlashText = std::array<char, 80>;
+
+/// Scalars and parameters are rows of a name and a value.
+template <class Value>
+struct FlashRow {
+    FlashText name;
+    Value value;
 };
 
-std::optional<double> time_of(const Hdf5& file) {
-    if (!file.has("real scalars")) return std::nullopt;
-    const Hdf5 scalars = file.at("real scalars");
+std::string text_of(const FlashText& padded) {
+    const std::string text(padded.data(), padded.size());
+    return text.substr(0, text.find_first_of(std::string(" \0", 2)));
+}
+
+/// The value of a name in a data set of rows, where there is one.
+/// \param type of a value in memory
+template <class Value>
+std::optional<Value> value_in(const Hdf5& file, const char* data_set, const char* wanted,
+                              hid_t type) {
+    if (!file.has(data_set)) return std::nullopt;
+    const Hdf5 data = file.at(data_set);
     const Hdf5 text(H5Tcopy(H5T_C_S1), "texts");
-    H5Tset_size(text.id(), sizeof(Scalar::name));
-    const Hdf5 row(H5Tcreate(H5T_COMPOUND, sizeof(Scalar)), "rows");
-    H5Tinsert(row.id(), "name", HOFFSET(Scalar, name), text.id());
-    H5Tinsert(row.id(), "value", HOFFSET(Scalar, value), H5T_NATIVE_DOUBLE);
-    const std::vector<hsize_t> shape = scalars.shape();
+    H5Tset_size(text.id(), sizeof(FlashText));
+    using Row = FlashRow<Value>;
+    const Hdf5 row(H5Tcreate(H5T_COMPOUND, sizeof(Row)), "rows");
+    H5Tinsert(row.id(), "name", offsetof(Row, name), text.id());
+    H5Tinsert(row.id(), "value", offsetof(Row, value), type < 0 ? text.id() : type);
+    const std::vector<hsize_t> shape = data.shape();
     if (shape.size() != 1 || shape[0] > 100000) return std::nullopt;
-    std::vector<Scalar> rows(shape[0]);
-    if (H5Dread(scalars.id(), row.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {
+    std::vector<Row> rows(shape[0]);
+    if (H5Dread(data.id(), row.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {
         return std::nullopt;
     }
-    for (const Scalar& each : rows) {
-        const std::string name(each.name.data(), each.name.size());
-        if (name.substr(0, name.find_first_of(std::string(" \0", 2))) == "time") return each.value;
+    for (const Row& each : rows) {
+        if (text_of(each.name) == wanted) return each.value;
     }
     return std::nullopt;
+}
+
+/// \throw InvalidInput for curved coordinates; files that tell none have cartesian ones
+void require_cartesian(const Hdf5& file) {
+    const auto told = value_in<FlashText>(file, "string runtime parameters", "geometry", -1);
+    if (!told || text_of(*told) == "cartesian") return;
+    throw InvalidInput("it has " + text_of(*told) + " coordinates, not cartesian ones");
 }
 
 /// Low and high ends of all blocks, six numbers a block.
@@ -86,6 +106,7 @@ void place_blocks(const std::vector<double>& boxes, BlockForest& forest, std::si
 
 BlockFile open_flash(const fs::path& path) {
     const auto opened = std::make_shared<const Hdf5>(open_hdf5(path));
+    require_cartesian(*opened);
     std::vector<ForestField> fields;
     for (const std::string& name : opened->at("unknown names").all_texts()) {
         std::string padded = name;  // to four letters, as data sets are named
@@ -105,7 +126,7 @@ BlockFile open_flash(const fs::path& path) {
     }
     place_blocks(boxes_of(*opened, forest.levels.size()), forest, forest.size[2] == 1 ? 2 : 3);
     BlockFile file = forest_file(opened, std::move(forest), std::move(fields));
-    file.time = time_of(*opened);
+    file.time = value_in<double>(*opened, "real scalars", "time", H5T_NATIVE_DOUBLE);
     return file;
 }
 
