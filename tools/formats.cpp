@@ -25,6 +25,8 @@ void add(const Format& more, Format& format) {
     format.detached.insert(format.detached.end(), more.detached.begin(), more.detached.end());
     format.single_precision = format.single_precision || more.single_precision;
     format.keeps_elements = format.keeps_elements || more.keeps_elements;
+    format.compresses = format.compresses || more.compresses;
+    format.has_doubles = format.has_doubles || more.has_doubles;
     format.reads_beside = format.reads_beside || more.reads_beside;
     format.fills_complexes = format.fills_complexes || more.fills_complexes;
     format.keeps_hierarchies = format.keeps_hierarchies || more.keeps_hierarchies;

@@ -5,6 +5,7 @@
 // table that 'nestgrid formats' prints, help and refusals are made of what is registered.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -21,6 +22,13 @@ namespace nestgrid {
 struct CoarseGrid;
 }
 
+/// How a surface is put into a file, where its format leaves a choice.
+struct SurfaceEncoding {
+    enum class Compression : std::uint8_t { lz4, zlib, none };
+    Compression compression = Compression::lz4;
+    bool doubles = false;  ///< points of double precision, also where single precision suffices
+};
+
 struct Format {
     using Path = std::filesystem::path;
 
@@ -32,6 +40,8 @@ struct Format {
 
     bool single_precision = false;  ///< of points in files that are written
     bool keeps_elements = false;    ///< in files that are written: values of triangles
+    bool compresses = false;        ///< files that are written, as a SurfaceEncoding says
+    bool has_doubles = false;       ///< in files that are written, where they are wanted
     bool reads_beside = false;      ///< other files of the folder, too
     bool fills_complexes = false;   ///< which takes longer than reading
     /// Whether files keep hierarchies with their fields, which are read and written as such
@@ -54,7 +64,8 @@ struct Format {
     /// Says what such a file has in it; null where there are no such files.
     void (*describe)(const Path& path, Report& report) = nullptr;
     /// \return why it could not be written, or nothing
-    std::string (*write_surface)(vtkPolyData* surface, const Path& path) = nullptr;
+    std::string (*write_surface)(vtkPolyData* surface, const Path& path,
+                                 const SurfaceEncoding& encoding) = nullptr;
 
     /// Whether a field is read from files.
     bool has_fields() const {

@@ -166,7 +166,21 @@ void info 'chooses nothing' two.nestgrid --array x
 refused 1 'no point data array' info v.vti --array none && echo "info --array" >>covered
 
 # What is drawn.
+# encoding COMMAND ARGUMENTS: --compress and --double of a file, and where there is none.
+encoding() {
+    for packed in zlib none; do effect $1 "$2 -o kept/x.vtp" --compress $packed; done
+    [ "$(result $1 $2 -o kept/x.vtp --compress lz4)" = "$(plain $1 $2 -o kept/x.vtp)" ] || fail "$1: lz4 is not the default"
+    effect $1 "$2 -o kept/x.vtp" --double
+    [[ "$(result $1 $2 -o kept/x.ply --double)" != refused:* ]] || fail "$1 --double: refused for a .ply"
+    grep -aq 'property double z' kept/x.ply || fail "$1 --double: a .ply of single precision"
+    for output in '' '-o kept/x.ply' '-o kept/x.stl' '-o kept/x.obj' '-o kept/x.gltf'; do
+        void $1 'compress is for an --output as .vtp' "$2 $output" --compress none
+        [[ $output = *ply ]] || void $1 'double is for an --output as .ply or .vtp' "$2 $output" --double
+    done
+    refused 2 "'zip' is none of" $1 $2 -o kept/x.vtp --compress zip
+}
 for command in isosurface band slice isolines boundary; do
+    encoding $command "$raw ${base[$command]}"
     effect $command "$raw ${base[$command]}" --max-triangles 3000
     void $command 'is for standard output' "$raw ${base[$command]}" --output-format ply
     echo "$command --output-format" >>covered
@@ -307,6 +321,7 @@ for command in height surface; do
     effect $command "hills.pgm $options" --output kept/x.vtp
     effect $command "hills.pgm $options $keep" --outlines
     effect $command "hills.pgm $options $keep" --elements
+    encoding $command "hills.pgm $options"
     void $command 'is about what is kept' "hills.pgm $options" --outlines
     effect $command "hills.pgm $options $keep --threshold 0.3" --indicator visual
     effect $command "hills.pgm $options $keep --threshold 3" --blend 2

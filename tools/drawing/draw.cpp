@@ -66,7 +66,7 @@ class Surfaces {
 public:
     Surfaces(const DrawingOptions& options, const DrawingRequest& request)
         : options_{options}, request_{request} {
-        if (options.time.frames) film_.emplace(options.surface.output);
+        if (options.time.frames) film_.emplace(options.surface.output, options.surface.encoding);
     }
 
     void run(Report& report) {
@@ -218,7 +218,8 @@ private:
         for (std::size_t i = 0; i < panels.size(); ++i) {
             data.push_back(data_of(panels[i], field_.surfaces[i], field_, request_));
         }
-        write_surfaces(data, options_.surface.output, options_.surface.output_ending(), report);
+        const SurfaceOptions& s = options_.surface;
+        write_surfaces(data, s.output, s.output_ending(), s.encoding, report);
         field_.write_seconds = meter.seconds();
     }
     void paint(std::vector<Panel>& panels, Report& report) {

@@ -260,6 +260,23 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_iso
                     "what standard output is, while the table goes to standard error [ply]")
         ->type_name("ENDING")
         ->group("Further");
+    command
+        .add_option_function<std::string>(
+            "--compress",
+            [&options](const std::string& word) {
+                using Compression = SurfaceEncoding::Compression;
+                options.encoding.compression = word == "zlib"   ? Compression::zlib
+                                               : word == "none" ? Compression::none
+                                                                : Compression::lz4;
+            },
+            "how a .vtp is packed: zlib is smallest, none is fastest [lz4]")
+        ->type_name("WORD")
+        ->group("Further")
+        ->check(one_of({"zlib", "lz4", "none"}));
+    command
+        .add_flag("--double", options.encoding.doubles,
+                  "write points in double precision, also where single precision suffices")
+        ->group("Further");
     add_projection_options(command, options.projection, of_isosurface);
     command.get_option("--error")->excludes("--indicator");
     command
@@ -284,6 +301,17 @@ std::string SurfaceOptions::output_ending() const {
 }
 
 namespace {
+
+/// Refuses an option where the format of the output does not do what it asks for.
+void require_format(const SurfaceOptions& options, const std::string& name, bool Format::*does) {
+    const Format* const format = format_of("x" + options.output_ending());
+    if (!options.output.empty() && format != nullptr && format->*does) return;
+    std::vector<std::string> endings;
+    for (const Format& other : formats()) {
+        if (other.*does) endings.push_back(other.endings.front());
+    }
+    refuse_options(*options.command, {name}, "is for an --output as " + joined(endings, "or"));
+}
 
 /// \throw nestgrid::InvalidInput, nestgrid::IoError where standard output takes no surface
 void check_stream(const SurfaceOptions& options) {
@@ -333,10 +361,9 @@ void check(const SurfaceOptions& options) {
     }
     parse(options.picture);
     if (options.command == nullptr) return;
-    const Format* const format = format_of("x" + options.output_ending());
-    if (options.output.empty() || format == nullptr || !format->keeps_elements) {
-        refuse_options(*options.command, {"--elements"}, "is for an --output as .vtp");
-    }
+    require_format(options, "--elements", &Format::keeps_elements);
+    require_format(options, "--compress", &Format::compresses);
+    require_format(options, "--double", &Format::has_doubles);
     if (options.output.empty() && options.picture.image.empty()) {
         refuse_options(*options.command, {"--outlines"},
                        "is about what is kept: give an --output or an --image");

@@ -15,6 +15,7 @@
 
 #include "commands/command.hpp"
 #include "drawing/projection.hpp"
+#include "formats.hpp"
 #include "input/volume.hpp"
 #include "output/report.hpp"
 #include "picture/picture_options.hpp"
@@ -66,6 +67,7 @@ struct SurfaceOptions {
     int threads = 0;
     std::filesystem::path output;
     std::string output_format{};  ///< of standard output: an ending
+    SurfaceEncoding encoding{};   ///< of files
     bool elements = false;        ///< files tell the element of each triangle
     PictureOptions picture;
     const CLI::App* command = nullptr;  ///< that they are options of

@@ -50,9 +50,10 @@ std::string number(double x) {
 }
 
 /// Writes a surface to standard output.
-void write_stream(vtkPolyData* surface, const std::string& ending, Report& report) {
+void write_stream(vtkPolyData* surface, const std::string& ending, const SurfaceEncoding& encoding,
+                  Report& report) {
     const TemporaryFile file("standard output" + ending);
-    write_surface(surface, file.path());
+    write_surface(surface, file.path(), encoding);
     report.leave_standard_output();
     report.wrote(file.path().filename(), contents_of(surface), fs::file_size(file.path()));
     const std::string moved = what_single_precision_moves(surface, file.path());
@@ -87,13 +88,13 @@ void write_collection(const fs::path& path, const std::vector<CollectionPart>& p
 }
 
 void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces, const fs::path& path,
-                    const std::string& ending, Report& report) {
-    if (is_standard_stream(path)) return write_stream(surfaces.front(), ending, report);
+                    const std::string& ending, const SurfaceEncoding& encoding, Report& report) {
+    if (is_standard_stream(path)) return write_stream(surfaces.front(), ending, encoding, report);
     std::vector<CollectionPart> parts;
     std::string moved;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         parts.push_back({numbered(path, i, surfaces.size()), static_cast<double>(i + 1)});
-        write_surface(surfaces[i], parts.back().path);
+        write_surface(surfaces[i], parts.back().path, encoding);
         report.wrote(parts.back().path, contents_of(surfaces[i]));
         if (moved.empty()) moved = what_single_precision_moves(surfaces[i], path);
     }

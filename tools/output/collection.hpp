@@ -8,6 +8,7 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
+#include "formats.hpp"
 #include "output/report.hpp"
 
 /// One of several surfaces in files beside each other.
@@ -29,4 +30,5 @@ void write_collection(const std::filesystem::path& path, const std::vector<Colle
 /// \param ending of the format, with its dot
 /// \throw nestgrid::IoError
 void write_surfaces(const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces,
-                    const std::filesystem::path& path, const std::string& ending, Report& report);
+                    const std::filesystem::path& path, const std::string& ending,
+                    const SurfaceEncoding& encoding, Report& report);

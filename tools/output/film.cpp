@@ -10,7 +10,10 @@
 
 namespace fs = std::filesystem;
 
-Film::Film(const fs::path& path) : path_{path} { check_writable(collection_path(path)); }
+Film::Film(const fs::path& path, const SurfaceEncoding& encoding)
+    : path_{path}, encoding_{encoding} {
+    check_writable(collection_path(path));
+}
 
 Film::~Film() {
     if (finished_) return;
@@ -23,7 +26,7 @@ void Film::add(vtkPolyData* surface, double time) {
     std::snprintf(digits.data(), digits.size(), "_%04zu", pictures_.size());
     const fs::path path =
         path_.parent_path() / (path_.stem().string() + digits.data() + path_.extension().string());
-    write_surface(surface, path);
+    write_surface(surface, path, encoding_);
     if (moved_.empty()) moved_ = what_single_precision_moves(surface, path);
     pictures_.push_back({path, time});
     contents_.push_back(contents_of(surface));

@@ -7,6 +7,7 @@
 
 #include <vtkPolyData.h>
 
+#include "formats.hpp"
 #include "output/collection.hpp"
 
 /// Surfaces at several times, in files, and a .pvd file that lists them, as ParaView opens it.
@@ -17,7 +18,7 @@ public:
     /// \param path of the surfaces without their number: name.vtp for name_0000.vtp, ... and
     ///        name.pvd
     /// \throw nestgrid::IoError where the files cannot be written
-    explicit Film(const std::filesystem::path& path);
+    Film(const std::filesystem::path& path, const SurfaceEncoding& encoding);
     Film(const Film&) = delete;
     Film& operator=(const Film&) = delete;
     ~Film();
@@ -31,6 +32,7 @@ public:
 
 private:
     std::filesystem::path path_;
+    SurfaceEncoding encoding_;
     std::vector<CollectionPart> pictures_;
     std::vector<std::vector<std::pair<std::string, std::uint64_t>>> contents_;
     std::string moved_;  // what the format does to points; mostly empty

@@ -17,7 +17,6 @@
 
 #include <nestgrid/error.hpp>
 
-#include "formats.hpp"
 #include "input/input_file.hpp"
 #include "joined.hpp"
 #include "output/precision.hpp"
@@ -57,8 +56,8 @@ void describe(vtkPolyData* surface, const std::string& unit, const std::string& 
 std::string what_single_precision_moves(vtkPolyData* surface, const fs::path& path) {
     const Format* const format = format_of(path);
     if (format == nullptr || !format->single_precision) return "";
+    if (single_keeps_shape(surface)) return "";
     const SinglePrecision single = single_precision(surface);
-    if (single.keeps_shape()) return "";
     std::vector<std::string> others;
     for (const Format& other : formats()) {
         const bool keeps = other.write_surface != nullptr && !other.single_precision;
@@ -121,11 +120,12 @@ void write_by_rename(const fs::path& path,
     throw IoError(path.string() + " could not be written: " + reason);
 }
 
-void write_surface(vtkPolyData* surface, const fs::path& path) {
+void write_surface(vtkPolyData* surface, const fs::path& path, const SurfaceEncoding& encoding) {
     const Format* const format = format_of(path);
     if (format == nullptr || format->write_surface == nullptr) {
         throw IoError("'" + path.string() + "' is of no format for surfaces");
     }
-    write_by_rename(
-        path, [&](const fs::path& temporary) { return format->write_surface(surface, temporary); });
+    write_by_rename(path, [&](const fs::path& temporary) {
+        return format->write_surface(surface, temporary, encoding);
+    });
 }

@@ -13,6 +13,8 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
+#include "formats.hpp"
+
 /// Throws nestgrid::IoError where the name ends with none of the formats, in lower case or not, or
 /// its folder cannot be written, so that this is known before any work is done.
 void check_output(const std::filesystem::path& path, const std::vector<std::string>& formats);
@@ -22,7 +24,8 @@ void check_writable(const std::filesystem::path& path);
 
 /// Writes in the format that the name tells. The file appears complete, by rename, or not at all.
 /// \throw nestgrid::IoError
-void write_surface(vtkPolyData* surface, const std::filesystem::path& path);
+void write_surface(vtkPolyData* surface, const std::filesystem::path& path,
+                   const SurfaceEncoding& encoding);
 
 /// Adds what is known of a whole surface, as field data.
 /// \param unit of lengths ("length_unit"); empty where it is unknown

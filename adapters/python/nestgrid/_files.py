@@ -9,7 +9,8 @@ import json
 import os
 import re
 import tempfile
-from typing import IO, Callable, Sequence
+import zlib
+from typing import IO, Callable, Literal, Sequence
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -18,18 +19,32 @@ from ._arguments import suggestion
 from ._nestgrid import InvalidInput, IoError
 
 Pieces = Sequence[tuple[str, np.ndarray]]
+#: How a file is packed.
+Compression = Literal["none", "zlib"]
 
 
-def write(path: str | os.PathLike, writers: dict[str, Callable[[IO[bytes]], None]]) -> None:
+def write(
+    path: str | os.PathLike,
+    writers: dict[str, Callable[[IO[bytes]], None]],
+    compress: Compression,
+    double: bool,
+) -> None:
     """Writes a file by the writer of its suffix.
 
-    Raises InvalidInput for a suffix that has none, IoError where writing fails.
+    compress, double  those that the writers were given
+
+    Raises InvalidInput for a suffix that has none, or whose writer does not know what is asked for,
+    IoError where writing fails.
     """
     path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in writers:
         near = suggestion(suffix, writers)
         raise InvalidInput(f"save(): '{path}' ends in none of {', '.join(writers)}{near}")
+    if compress != "none" and suffix != ".vtp":
+        raise InvalidInput(f"save(): compress is for .vtp, not for '{path}'")
+    if not double and suffix not in (".vtp", ".ply"):
+        raise InvalidInput(f"save(): double=False is for .vtp and .ply, not for '{path}'")
     part = None
     try:
         folder = os.path.dirname(path) or "."
@@ -54,15 +69,21 @@ def put(file: IO[bytes], array: np.ndarray) -> None:
         file.write(data[begin : begin + (1 << 24)])
 
 
-def ply(file: IO[bytes], vertices: np.ndarray, normals: np.ndarray, triangles: np.ndarray) -> None:
-    """Writes a binary PLY file with positions and normals of type double."""
+def ply(
+    file: IO[bytes],
+    vertices: np.ndarray,
+    normals: np.ndarray,
+    triangles: np.ndarray,
+    double: bool,
+) -> None:
+    """Writes a binary PLY file with positions and normals of type double or float."""
     names = ["x", "y", "z"] + (["nx", "ny", "nz"] if len(normals) else [])
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(vertices)}"]
-    header += [f"property double {name}" for name in names]
+    header += [f"property {'double' if double else 'float'} {name}" for name in names]
     header += [f"element face {len(triangles)}", "property list uchar uint vertex_indices"]
     file.write(("\n".join(header) + "\nend_header\n").encode())
     rows = np.hstack([vertices, normals]) if len(normals) else vertices
-    put(file, rows.astype("<f8", copy=False))
+    put(file, rows.astype("<f8" if double else "<f4", copy=False))
     faces = np.empty(len(triangles), [("count", "u1"), ("corners", "<u4", 3)])
     faces["count"] = 3
     faces["corners"] = triangles
@@ -165,23 +186,33 @@ def vtp(
     cells: Pieces,
     point_data: Pieces = (),
     cell_data: Pieces = (),
+    *,
+    compress: Compression,
+    double: bool,
 ) -> None:
-    """Writes VTK's XML poly data, binary.
+    """Writes VTK's XML poly data, binary, with numbers of 32 bits for corners where they suffice.
 
     cells: one of ("Polys", (n, 3)), ("Lines", (n, 2)) or ("Lines", the connectivity of several
     lines) with ("offsets", the end of each).
     """
-    blocks: list[bytes] = []
-    kinds = {"f": "Float64", "i": "Int64"}
+    blocks: list[np.ndarray] = []
+    kinds = {"f8": "Float64", "f4": "Float32", "i8": "Int64", "i4": "Int32"}
+    offset = 0
 
     def array(name: str, data: np.ndarray) -> str:
-        data = np.ascontiguousarray(data, "<f8" if data.dtype.kind == "f" else "<i8")
-        offset = sum(len(block) for block in blocks)
-        blocks.append(np.uint64(data.nbytes).tobytes() + data.tobytes())
+        nonlocal offset
+        is_float = data.dtype.kind == "f"
+        wide = double if is_float else data.size > 0 and data.max() > np.iinfo(np.int32).max
+        kind = ("f" if is_float else "i") + ("8" if wide else "4")
+        data = np.ascontiguousarray(data, "<" + kind)
+        begin = offset
+        parts = [np.array([data.nbytes], "<u8"), data] if compress == "none" else packed(data)
+        blocks.extend(parts)
+        offset += sum(part.nbytes for part in parts)
         columns = data.shape[1] if data.ndim == 2 else 1
         return (
-            f'<DataArray type="{kinds[data.dtype.kind]}" Name={quoteattr(name)} '
-            f'NumberOfComponents="{columns}" format="appended" offset="{offset}"/>'
+            f'<DataArray type="{kinds[kind]}" Name={quoteattr(name)} '
+            f'NumberOfComponents="{columns}" format="appended" offset="{begin}"/>'
         )
 
     kind, corners = cells[0]
@@ -189,7 +220,8 @@ def vtp(
     number = f'NumberOf{kind}="{len(ends)}"'
     xml = [
         '<?xml version="1.0"?>',
-        '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
+        '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64"'
+        + (' compressor="vtkZLibDataCompressor">' if compress == "zlib" else ">"),
         f'<PolyData><Piece NumberOfPoints="{len(vertices)}" {number}>',
         "<Points>" + array("Points", vertices) + "</Points>",
         "<PointData>" + "".join(array(*piece) for piece in point_data) + "</PointData>",
@@ -199,5 +231,15 @@ def vtp(
     ]
     file.write("\n".join(xml).encode())
     for block in blocks:
-        put(file, np.frombuffer(block, np.uint8))
+        put(file, block)
     file.write(b"</AppendedData></VTKFile>\n")
+
+
+def packed(array: np.ndarray) -> list[np.ndarray]:
+    """An array as VTK packs it: the number of parts, the size of all but the last before they were
+    packed, that of the last unless it is whole, the size of each after it, and the parts."""
+    data = array.reshape(-1).view(np.uint8).data
+    size = 1 << 18
+    parts = [zlib.compress(data[begin : begin + size]) for begin in range(0, len(data), size)]
+    sizes = [len(parts), size, len(data) % size] + [len(part) for part in parts]
+    return [np.array(sizes, "<u8"), np.frombuffer(b"".join(parts), np.uint8)]

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Iterable, Iterator, Sequence, T
 import numpy as np
 
 from . import _files, _html, _nestgrid
-from ._arguments import InvalidType, numbers, several, takes, whole
+from ._arguments import InvalidType, flag, name_of, numbers, several, takes, whole
 from ._arguments import path as path_kind
+from ._files import Compression
 
 if TYPE_CHECKING:
     import pyvista
@@ -236,28 +237,46 @@ class Surface(_Result):
         cells = np.hstack([np.full((len(self.triangles), 1), 3), self.triangles])
         return _poly_data(self.vertices, "SetPolys", cells, len(cells), self._point_data())
 
-    @takes(path=path_kind)
-    def save(self, path: str | os.PathLike[str]) -> None:
+    @takes(path=path_kind, compress=name_of(Compression), double=flag)
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        compress: Compression = "none",
+        double: bool = True,
+    ) -> None:
         """Writes a file, which appears when it is complete.
 
-        path  ends in .vtp, .ply, .stl, .obj or .gltf. All but .stl have normals, .vtp and .gltf
-              attributes; numbers are double in .vtp and .ply
+        path      ends in .vtp, .ply, .stl, .obj or .gltf. All but .stl have normals, .vtp and
+                  .gltf attributes
+        compress  how a .vtp is packed: "none", or "zlib", which takes longer and makes it smaller
+        double    whether numbers in .vtp and .ply are of double precision, or of single
 
-        Raises InvalidInput for another suffix, IoError where writing fails.
+        Raises InvalidInput for another suffix, and for a choice that its format does not have,
+        IoError where writing fails.
         """
         _files.write(
             path,
             {
                 ".vtp": lambda f: _files.vtp(
-                    f, self.vertices, [("Polys", self.triangles)], self._point_data()
+                    f,
+                    self.vertices,
+                    [("Polys", self.triangles)],
+                    self._point_data(),
+                    compress=compress,
+                    double=double,
                 ),
-                ".ply": lambda f: _files.ply(f, self.vertices, self.normals, self.triangles),
+                ".ply": lambda f: _files.ply(
+                    f, self.vertices, self.normals, self.triangles, double
+                ),
                 ".stl": lambda f: _files.stl(f, self.vertices, self.triangles),
                 ".obj": lambda f: _files.obj(f, self.vertices, self.normals, self.triangles),
                 ".gltf": lambda f: _files.gltf(
                     f, self.vertices, self._point_data(), self.triangles
                 ),
             },
+            compress,
+            double,
         )
 
     def _point_data(self) -> list[tuple[str, np.ndarray]]:
@@ -305,14 +324,23 @@ class Lines(_Result):
         _add_arrays(data.GetCellData(), [("value", self.values)])
         return data
 
-    @takes(path=path_kind)
-    def save(self, path: str | os.PathLike[str]) -> None:
+    @takes(path=path_kind, compress=name_of(Compression), double=flag)
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        compress: Compression = "none",
+        double: bool = True,
+    ) -> None:
         """Writes a file, which appears when it is complete.
 
-        path  ends in .vtp, .obj or .gltf; .vtp has the value of each line, .vtp and .gltf
-              attributes
+        path      ends in .vtp, .obj or .gltf; .vtp has the value of each line, .vtp and .gltf
+                  attributes
+        compress  how a .vtp is packed: "none", or "zlib", which takes longer and makes it smaller
+        double    whether numbers in a .vtp are of double precision, or of single
 
-        Raises InvalidInput for another suffix, IoError where writing fails.
+        Raises InvalidInput for another suffix, and for a choice that its format does not have,
+        IoError where writing fails.
         """
         cells = [("Lines", self.points.astype(np.int64)), ("offsets", self.first[1:].astype(int))]
         attributes = _columns(self.attributes, self._name)
@@ -322,10 +350,14 @@ class Lines(_Result):
         _files.write(
             path,
             {
-                ".vtp": lambda f: _files.vtp(f, self.vertices, cells, attributes, values),
+                ".vtp": lambda f: _files.vtp(
+                    f, self.vertices, cells, attributes, values, compress=compress, double=double
+                ),
                 ".obj": lambda f: _files.obj(f, self.vertices, none, lines=parts),
                 ".gltf": lambda f: _files.gltf(f, self.vertices, attributes, _pairs(parts)),
             },
+            compress,
+            double,
         )
 
     def _counted(self) -> str:
@@ -348,23 +380,36 @@ class Segments(_Extracted):
         cells = np.hstack([np.full((len(self.segments), 1), 2), self.segments])
         return _poly_data(self.vertices, "SetLines", cells, len(cells), [])
 
-    @takes(path=path_kind)
-    def save(self, path: str | os.PathLike[str]) -> None:
+    @takes(path=path_kind, compress=name_of(Compression), double=flag)
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        compress: Compression = "none",
+        double: bool = True,
+    ) -> None:
         """Writes a file, which appears when it is complete.
 
-        path  ends in .vtp, .obj or .gltf
+        path      ends in .vtp, .obj or .gltf
+        compress  how a .vtp is packed: "none", or "zlib", which takes longer and makes it smaller
+        double    whether numbers in a .vtp are of double precision, or of single
 
-        Raises InvalidInput for another suffix, IoError where writing fails.
+        Raises InvalidInput for another suffix, and for a choice that its format does not have,
+        IoError where writing fails.
         """
         cells = [("Lines", self.segments)]
         none = np.zeros((0, 3))
         _files.write(
             path,
             {
-                ".vtp": lambda f: _files.vtp(f, self.vertices, cells),
+                ".vtp": lambda f: _files.vtp(
+                    f, self.vertices, cells, compress=compress, double=double
+                ),
                 ".obj": lambda f: _files.obj(f, self.vertices, none, lines=list(self.segments)),
                 ".gltf": lambda f: _files.gltf(f, self.vertices, [], self.segments),
             },
+            compress,
+            double,
         )
 
     def _size(self) -> str:

@@ -150,6 +150,19 @@ def test_help_tells_all_arguments(key):
     assert max(len(line) for line in doc.splitlines()) <= 100
 
 
+def test_encodings_of_files_are_refused_where_a_format_has_none(tmp_path):
+    surface = nestgrid.Volume(CUBE).isosurface(3)
+    for suffix in ("ply", "stl", "obj", "gltf"):
+        with pytest.raises(nestgrid.InvalidInput, match="compress is for .vtp, not for '.*x." + suffix):
+            surface.save(tmp_path / f"x.{suffix}", compress="zlib")
+    for suffix in ("stl", "obj", "gltf"):
+        with pytest.raises(nestgrid.InvalidInput, match="double=False is for .vtp and .ply, not for"):
+            surface.save(tmp_path / f"x.{suffix}", double=False)
+    with pytest.raises(nestgrid.InvalidInput, match="'lz4' is none of none and zlib"):
+        surface.save(tmp_path / "x.vtp", compress="lz4")
+    assert not list(tmp_path.iterdir())
+
+
 def test_suggestions():
     volume = nestgrid.Volume(CUBE)
     with pytest.raises(nestgrid.InvalidInput, match="did you mean 'wavelet'?"):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Surfaces and lines in VTK, PyVista and files."""
 import gc
+import os
 import sys
 import types
 
@@ -116,6 +117,36 @@ def test_files_of_surfaces(surface, tmp_path):
     np.testing.assert_allclose(
         corners, surface.vertices[surface.triangles].reshape(-1, 3), rtol=1e-6, atol=1e-6
     )
+
+
+@pytest.mark.parametrize("compress", ["none", "zlib"])
+@pytest.mark.parametrize("double", [True, False])
+def test_encodings_of_files(surface, lines, gyroid, tmp_path, compress, double):
+    kind = np.float64 if double else np.float32
+    empty = nestgrid.Volume(gyroid).isosurface(100)
+    edges = nestgrid.Volume(gyroid).isosurface(0.1, 0.1, elements=True).outlines()
+    for what in (surface, lines, empty, edges):
+        what.save(tmp_path / "x.vtp", compress=compress, double=double)
+        data = read(vtkXMLPolyDataReader(), tmp_path / "x.vtp")
+        np.testing.assert_array_equal(points_of(data), what.vertices.astype(kind))
+        assert points_of(data).dtype == kind
+        expected = what.to_vtk()
+        for cells, others in (
+            (data.GetPolys(), expected.GetPolys()),
+            (data.GetLines(), expected.GetLines()),
+        ):
+            np.testing.assert_array_equal(corners_of(cells), corners_of(others))
+            assert cells.GetNumberOfCells() == others.GetNumberOfCells()
+    surface.save(tmp_path / "x.ply", double=double)
+    assert (b"property double" in (tmp_path / "x.ply").read_bytes()) == double
+
+
+def test_packed_files_are_smaller(surface, tmp_path):
+    sizes = []
+    for compress in ("none", "zlib"):
+        surface.save(tmp_path / "x.vtp", compress=compress)
+        sizes.append(os.path.getsize(tmp_path / "x.vtp"))
+    assert sizes[1] < 0.7 * sizes[0]
 
 
 def test_files_of_lines(lines, gyroid, tmp_path):

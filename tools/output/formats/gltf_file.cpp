@@ -99,12 +99,13 @@ std::string complete(const std::filesystem::path& path, const Json::Value& known
     return out ? "" : std::strerror(errno);
 }
 
-std::string write_gltf(vtkPolyData* surface, const std::filesystem::path& path) {
+std::string write_gltf(vtkPolyData* surface, const std::filesystem::path& path,
+                       const SurfaceEncoding& /*no choice*/) {
     const vtkNew<vtkGLTFWriter> writer;
     writer->InlineDataOn();
     writer->SaveNormalOn();
     Origin origin;
-    if (!single_precision(surface).keeps_shape()) {
+    if (!single_keeps_shape(surface)) {
         origin.emplace();
         surface->GetCenter(origin->data());
     }

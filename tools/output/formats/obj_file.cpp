@@ -9,7 +9,8 @@
 
 namespace {
 
-std::string write_obj(vtkPolyData* surface, const std::filesystem::path& path) {
+std::string write_obj(vtkPolyData* surface, const std::filesystem::path& path,
+                      const SurfaceEncoding& /*no choice*/) {
     const vtkNew<vtkOBJWriter> writer;
     writer->SetInputData(surface);
     return written_by(writer.Get(), path);

@@ -29,18 +29,19 @@ public:
     explicit RowBuffer(std::ofstream& file) : file_{file} {}
     template <class Number>
     void put(Number number) {
-        const auto* bytes = reinterpret_cast<const char*>(&number);
-        bytes_.insert(bytes_.end(), bytes, bytes + sizeof number);
-        if (bytes_.size() > 1U << 20U) flush();
+        if (size_ + sizeof number > bytes_.size()) flush();
+        std::memcpy(bytes_.data() + size_, &number, sizeof number);
+        size_ += sizeof number;
     }
     void flush() {
-        file_.write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
-        bytes_.clear();
+        file_.write(bytes_.data(), static_cast<std::streamsize>(size_));
+        size_ = 0;
     }
 
 private:
     std::ofstream& file_;
-    std::vector<char> bytes_;
+    std::vector<char> bytes_ = std::vector<char>(std::size_t{1} << 20U);
+    std::size_t size_ = 0;
 };
 
 /// What stands at each point beside its place.
@@ -121,9 +122,10 @@ void put_points(vtkPolyData* surface, const PointColumns& columns, bool single, 
     }
 }
 
-std::string write_ply(vtkPolyData* surface, const std::filesystem::path& path) {
+std::string write_ply(vtkPolyData* surface, const std::filesystem::path& path,
+                      const SurfaceEncoding& encoding) {
     std::ofstream file(path, std::ios::binary);
-    const bool single = single_precision(surface).keeps_edges();
+    const bool single = !encoding.doubles && single_keeps_edges(surface);
     const PointColumns columns = columns_of(surface);
     file << header_of(surface, columns, single);
     RowBuffer row(file);
@@ -147,6 +149,7 @@ std::string write_ply(vtkPolyData* surface, const std::filesystem::path& path) {
 const RegisteredFormat ply({.name = "PLY",
                             .endings = {".ply"},
                             .holds = "triangles, lines, normals and values",
+                            .has_doubles = true,
                             .write_surface = write_ply});
 
 }  // namespace

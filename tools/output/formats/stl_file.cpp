@@ -9,7 +9,8 @@
 
 namespace {
 
-std::string write_stl(vtkPolyData* surface, const std::filesystem::path& path) {
+std::string write_stl(vtkPolyData* surface, const std::filesystem::path& path,
+                      const SurfaceEncoding& /*no choice*/) {
     const vtkNew<vtkSTLWriter> writer;
     writer->SetInputData(surface);
     writer->SetFileTypeToBinary();

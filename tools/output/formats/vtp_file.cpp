@@ -14,10 +14,10 @@
 namespace {
 
 /// The same surface with points and numbers of corners that take less room.
-vtkSmartPointer<vtkPolyData> in_short(vtkPolyData* surface) {
+vtkSmartPointer<vtkPolyData> in_short(vtkPolyData* surface, bool doubles) {
     auto result = vtkSmartPointer<vtkPolyData>::New();
     result->ShallowCopy(surface);
-    if (single_precision(surface).keeps_shape()) {
+    if (!doubles && single_keeps_shape(surface)) {
         const vtkNew<vtkPoints> points;
         points->SetDataTypeToFloat();
         points->DeepCopy(surface->GetPoints());
@@ -35,12 +35,22 @@ vtkSmartPointer<vtkPolyData> in_short(vtkPolyData* surface) {
     return result;
 }
 
-std::string write_vtp(vtkPolyData* surface, const std::filesystem::path& path) {
+std::string write_vtp(vtkPolyData* surface, const std::filesystem::path& path,
+                      const SurfaceEncoding& encoding) {
     const vtkNew<vtkXMLPolyDataWriter> writer;
-    writer->SetInputData(in_short(surface));
+    writer->SetInputData(in_short(surface, encoding.doubles));
     writer->SetDataModeToAppended();
     writer->EncodeAppendedDataOff();
-    writer->SetCompressorTypeToLZ4();
+    switch (encoding.compression) {
+        case SurfaceEncoding::Compression::lz4:
+            writer->SetCompressorTypeToLZ4();
+            break;
+        case SurfaceEncoding::Compression::zlib:
+            writer->SetCompressorTypeToZLib();
+            break;
+        case SurfaceEncoding::Compression::none:
+            writer->SetCompressorTypeToNone();
+    }
     writer->SetHeaderTypeToUInt64();
     return written_by(writer.Get(), path);
 }
@@ -49,6 +59,8 @@ const RegisteredFormat vtp({.name = "VTK poly data",
                             .endings = {".vtp"},
                             .holds = "triangles, lines, normals and values",
                             .keeps_elements = true,
+                            .compresses = true,
+                            .has_doubles = true,
                             .write_surface = write_vtp});
 
 }  // namespace
