@@ -35,18 +35,34 @@ HighOrderData::HighOrderData(const Hierarchy<float>& single)
     : widened{std::in_place, checked(single), 0},
       base{&*widened},
       walk{*base},
-      records{*base, walk},
-      nodes{*base, walk, records} {
-    records.finish();
+      field{LeafField(*base), walk, base->epoch()} {
+    look_at_places();
 }
 
 HighOrderData::HighOrderData(const Hierarchy<double>& from)
-    : base{&checked(from)}, walk{*base}, records{*base, walk}, nodes{*base, walk, records} {
-    records.finish();
+    : base{&checked(from)}, walk{*base}, field{LeafField(*base), walk, base->epoch()} {
+    look_at_places();
+}
+
+void HighOrderData::look_at_places() {
+    if (!base->offers(Feature::geometry_degree)) return;
+    bool curved = false;
+    walk.for_each([&](Task* task, std::span<const BaseElement> way) {
+        const Member& leaf = *way.back().member;
+        curved |= leaf.rule == nullptr && base->geometry_degree(task, leaf.element) != 1;
+    });
+    if (curved) places.emplace(LeafPlaces(*base), walk, base->epoch());
+}
+
+/// The same share of the diameter of the domain as the tolerance is of the range of the data.
+double HighOrderData::default_position_tolerance(double tolerance) const {
+    const double range = field.records.extent();
+    const double share = range > 0 ? tolerance / range : 1e-3;
+    return std::min(share * places->records.extent(), std::numeric_limits<double>::max());
 }
 
 const LeafCorners& HighOrderData::corners() const {
-    std::call_once(corners_made_, [this] { corners_.emplace(walk, records); });
+    std::call_once(corners_made_, [this] { corners_.emplace(walk, field.records); });
     return *corners_;
 }
 
@@ -62,6 +78,7 @@ HierarchyFacts facts_of(const HighOrderData& data) {
                      (base.features & (static_cast<unsigned>(Feature::boundary_faces) |
                                        static_cast<unsigned>(Feature::new_positions)));
     facts.decodes = true;  // what is below an element depends on P_S U at its corners
+    if (data.places) facts.features |= static_cast<unsigned>(Feature::new_positions);
     // Pyramids have tetrahedra below them.
     facts.only_shape = base.only_shape == Shape::pyramid ? Shape::point : base.only_shape;
     return facts;
@@ -81,24 +98,36 @@ HighOrder::HighOrder(const Hierarchy<float>& base)
 HighOrder::HighOrder(const Hierarchy<double>& base)
     : data_{std::make_shared<const engine::HighOrderData>(base)} {}
 
-int HighOrder::greatest_degree() const { return data_->records.greatest_degree(); }
-double HighOrder::jump() const { return data_->records.jump(); }
+int HighOrder::greatest_degree() const { return data_->field.records.greatest_degree(); }
+int HighOrder::geometry_degree() const {
+    return data_->places ? data_->places->records.greatest_degree() : 1;
+}
+double HighOrder::jump() const { return data_->field.records.jump(); }
+double HighOrder::position_jump() const {
+    return data_->places ? data_->places->records.jump() : 0;
+}
 
 double HighOrder::least_tolerance() const {
-    const engine::LeafRecords& records = data_->records;
-    double beta = 0;
-    for (const engine::LeafPolynomial& leaf : records.leaves()) {
-        const auto facts = engine::net_facts(records.net(leaf), leaf.degree, leaf.factors());
-        beta = std::max(beta, facts.beta);
-    }
     // A half of a part has a quarter of its beta.
-    const double at_limit = std::ldexp(engine::flat_share * beta, -2 * VirtualOptions{}.depth);
-    const double size = std::max(std::abs(records.least()), std::abs(records.greatest()));
-    return std::max({at_limit, 2e-12 * size, double{std::numeric_limits<float>::min()}});
+    const auto at_limit = [](const engine::LeafRecords& records) {
+        double beta = 0;
+        for (const engine::LeafPolynomial& leaf : records.leaves()) {
+            beta = std::max(beta, records.facts_of(leaf).beta);
+        }
+        return std::ldexp(engine::flat_share * beta, -2 * VirtualOptions{}.depth);
+    };
+    const engine::LeafRecords& records = data_->field.records;
+    double least = std::max(at_limit(records), 2e-12 * records.magnitude());
+    if (data_->places) {
+        // Positions are within the same share of the domain.
+        const double of_domain = data_->default_position_tolerance(1);
+        least = std::max(least, at_limit(data_->places->records) / of_domain);
+    }
+    return std::max(least, double{std::numeric_limits<float>::min()});
 }
 
 std::size_t HighOrder::memory_bytes() const {
-    return data_->records.memory_bytes() + data_->nodes.memory_bytes();
+    return data_->field.memory_bytes() + (data_->places ? data_->places->memory_bytes() : 0);
 }
 
 VirtualRefinement::VirtualRefinement(const HighOrder& data, const VirtualOptions& options)
@@ -113,7 +142,7 @@ VirtualRefinement::VirtualRefinement(const HighOrder& data, const VirtualOptions
 }
 
 const Criterion& VirtualRefinement::criterion() const { return elements_->criterion(); }
-const Bounds& VirtualRefinement::bounds() const { return elements_->data().nodes; }
+const Bounds& VirtualRefinement::bounds() const { return elements_->data().field.nodes; }
 
 std::size_t VirtualRefinement::coarse_count() const {
     return elements_->data().base->coarse_count();
@@ -129,7 +158,7 @@ void VirtualRefinement::coarse(Task* task, std::size_t i, Coarse& coarse, Family
 NodeMask VirtualRefinement::coarse_values(Task* task, std::size_t i, std::size_t corners,
                                           double* out) const {
     return elements_->coarse_values(task, i,
-                                    {out, corners * elements_->data().records.components()});
+                                    {out, corners * elements_->data().field.records.components()});
 }
 
 NodeMask VirtualRefinement::enter(Task* task, const Handle& element, const Rule& /*rule*/,

@@ -1,56 +1,47 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Elements below a leaf: their coefficients, what of them is flat, and how far they are from what
-// is drawn.
+// Elements below a leaf: what of them is flat, how far they are from what is drawn, and values and
+// positions at their new nodes.
 #include <algorithm>
 #include <cmath>
 
 #include <high_order/virtual_elements.hpp>
+#include <nestgrid/algorithms/detail/round_up.hpp>
+#include <nestgrid/detail/interpolate.hpp>
 
 namespace nestgrid::engine {
 
-namespace {
+using nestgrid::detail::interpolate;
 
-std::size_t child_of(const VirtualElement& e) { return static_cast<std::size_t>(e.way & 15U); }
-
-/// Facts of an edge or a face of an element that lies inside its leaf, from the coefficients of the
-/// element.
-NetFacts facts_on_part(const double* net, int degree, const ShapeParts& shape,
-                       const ShapePart& part, std::span<const std::uint8_t> number) {
-    std::array<std::uint8_t, 4> corner{};
-    for (std::size_t i = 0; i < part.count; ++i) corner[i] = number[part.corner[i]];
-    std::sort(corner.begin(), corner.begin() + part.count);
-    std::array<Place, 3> frame{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Place& twice = shape.node[corner[i]];
-        frame[i] = {twice[0] / 2, twice[1] / 2, twice[2] / 2};
-    }
-    NetRoom on_part;
-    take_part(net, degree, shape.factors, std::span(frame).first(part.count == 2 ? 2 : 3),
-              part.factors, on_part.data());
-    return net_facts(on_part.data(), degree, part.factors);
+/// Looks at the field, or at positions, in an element below a leaf.
+/// \param u what is drawn at the corners: all of component 0, then the next one
+auto VirtualElements::look(OpenTask& task, const VirtualElement& e, const Drawn& drawn,
+                           std::span<const double> u) const -> Looked {
+    std::array<OwnNet, 3> nets;
+    std::vector<ElementNets>& makers = task.nets_of(*drawn.records);
+    for (std::size_t c = 0; c < makers.size(); ++c) nets[c] = makers[c].of(e);
+    const auto own = std::span<const OwnNet>(nets).first(makers.size());
+    Looked looked;
+    looked.facts = joined_facts(own.size(), [&](std::size_t c) {
+        const NetFacts facts = net_facts(own[c].net, own[c].degree, own[c].factors);
+        looked.beta[c] = facts.beta;
+        return facts;
+    });
+    look_at_parts(e, drawn, own, looked);
+    look_at_error(task, e, drawn, own, u, looked);
+    return looked;
 }
-
-/// Whether an element below a pyramid has its apex, so that the box around it is the element.
-bool reaches_apex(const VirtualElement& e) {
-    const auto& at = e.state->at;
-    return std::any_of(at.begin(),
-                       at.begin() + static_cast<std::ptrdiff_t>(e.state->shape->corners),
-                       [&](const Place& x) { return x[2] == std::int64_t{1} << e.level; });
-}
-
-}  // namespace
 
 /// Finds the flat parts of an element below a leaf, from the side of the leaf.
-auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> Looked {
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
+void VirtualElements::look_at_parts(const VirtualElement& e, const Drawn& drawn,
+                                    std::span<const OwnNet> own, Looked& looked) const {
+    const LeafRecords& records = *drawn.records;
+    const LeafPolynomial& leaf = records.leaves()[e.leaf];
     const ShapeParts& in_leaf = leaf.parts();
     const ShapeParts& shape = *e.state->shape;
-    Looked looked{0, true, net_facts(own.net, own.degree, own.factors)};
-    const auto places = std::span<const Place>(e.state->at).first(shape.corners);
-    const bool flat_inside = is_flat(looked.facts.beta, e.level,
-                                     [&] { return lens_->is_fine(e.leaf, places, e.level); });
+    const bool flat_inside = is_flat(drawn, looked.facts.beta, e.level,
+                                     [&] { return lens_->is_fine(e.leaf, e.places(), e.level); });
     const bool flat_parts = flat_inside && in_leaf.is_box;
     std::array<FaceMask, max_corners> faces;
     for (std::size_t k = 0; k < shape.corners; ++k) {
@@ -71,7 +62,6 @@ auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> 
             around &= faces[part.corner[i]];
         }
         const auto of_part = std::span<const Place>(corners).first(part.count);
-        const auto is_fine = [&] { return lens_->is_fine(e.leaf, of_part, e.level); };
         const int number = in_leaf.part_in(around);
         bool flat = flat_parts && number < 0;
         for (std::size_t f = 0; f < flat_faces && part.count == 2; ++f) {
@@ -79,18 +69,18 @@ auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> 
         }
         if (!flat && number >= 0) {
             const OnRecord on =
-                records_->on_part(leaf, static_cast<std::size_t>(number), of_part, e.level);
-            const NetFacts facts = records_->facts_on(on);
+                records.on_part(leaf, static_cast<std::size_t>(number), of_part, e.level);
+            const NetFacts facts = records.facts_on(on);
             looked.facts.least = std::min(looked.facts.least, facts.least);
             looked.facts.greatest = std::max(looked.facts.greatest, facts.greatest);
-            flat = is_flat(facts.beta, e.level + on.shift, [&] { return lens_->is_fine(on); });
-        } else if (!flat && own.curvature != nullptr) {
-            constexpr std::array shapes{Shape::segment, Shape::triangle, Shape::quadrilateral};
-            flat = is_flat(own.curvature->beta(shapes[part.count - 2U], of_part, e.level), e.level,
-                           is_fine);
+            flat =
+                is_flat(drawn, facts.beta, e.level + on.shift, [&] { return lens_->is_fine(on); });
         } else if (!flat) {
-            flat = is_flat(facts_on_part(own.net, own.degree, shape, part, own.number).beta,
-                           e.level, is_fine);
+            const double beta = norm_of(own.size(), [&](std::size_t c) {
+                return ElementNets::beta_on_part(e, own[c], part);
+            });
+            flat = is_flat(drawn, beta, e.level,
+                           [&] { return lens_->is_fine(e.leaf, of_part, e.level); });
         }
         if (flat && part.count > 2) {
             part_around[flat_faces] = number;
@@ -103,117 +93,35 @@ auto VirtualElements::look(const VirtualElement& e, const OwnNet& own) const -> 
     }
     // A node inside the element is private to it.
     if (shape.rule->inside != no_new_node) looked.all_flat &= flat_inside;
-    return looked;
 }
 
-/// How far U may be from what is drawn between the corners: with A the affine function that fits
-/// P_S U there best up to s, and r the greatest distance of U from it, r + s, because at a vertex,
-/// where P_S U is what is drawn, A is within s of that, and so on triangles. Or what the element's
-/// beta and the corners say.
-/// \param u P_S U at the corners, in the order of the net
-double VirtualElements::drawn_error(const VirtualElement& e, const OwnNet& own, double beta,
-                                    std::span<const double> u) const {
-    if (own.curvature != nullptr) return drawn_error_in_pyramid(e, own, beta, u);
-    const AffineFit fit = fit_affine(u, own.factors);
-    const double distance = distance_from_affine(own.net, own.degree, own.factors, fit);
-    double off = 0;
-    for (std::size_t k = 0; k < u.size(); ++k) {
-        off = std::max(off, std::abs(own.net[net_corner(own.degree, own.factors, k)] - u[k]));
+/// Tells how far the leaf may be from what is drawn between the corners of an element below it.
+void VirtualElements::look_at_error(OpenTask& task, const VirtualElement& e, const Drawn& drawn,
+                                    std::span<const OwnNet> own, std::span<const double> u,
+                                    Looked& looked) const {
+    const std::size_t corners = e.state->shape->corners;
+    const std::vector<ElementNets>& makers = task.nets_of(*drawn.records);
+    const bool one = own.size() == 1;
+    const double error = norm_of(own.size(), [&](std::size_t c) {
+        return makers[c].drawn_error(e, own[c], looked.beta[c], u.subspan(c * corners, corners),
+                                     one ? drawn.tolerance - drawn.rounding : 0);
+    });
+    if (!one) {
+        looked.corner_error = norm_of(own.size(), [&](std::size_t c) {
+            return makers[c].corner_error(e, own[c], u.subspan(c * corners, corners));
+        });
     }
-    return std::min(distance + fit.residual, beta + off + 2 * fit.residual) + least_beyond_;
-}
-
-/// What drawn_error() is for a pyramid or a tetrahedron below a leaf that is a pyramid: U is known
-/// by its coefficients in a box around the element.
-/// \param beta of the box, which at the apex is the element
-double VirtualElements::drawn_error_in_pyramid(const VirtualElement& e, const OwnNet& own,
-                                               double beta, std::span<const double> u) const {
-    const ShapeParts& shape = *e.state->shape;
-    const bool pyramid = shape.shape == Shape::pyramid;
-    const double residual = pyramid ? pyramid_residual(u) : 0;
-    std::array<Point, 4> x{};
-    std::array<double, 4> affine{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t corner = i == 0 ? 0 : shape.axis[i - 1];
-        x[i] = point_at(e.state->at[corner], e.level);
-        // The corners of the base are off to one side and the other in turn.
-        const double twist = pyramid ? (u[0] - u[1] - u[2] + u[3]) / 4 : 0;
-        affine[i] = u[corner] - (corner == 4 ? 0 : corner == 0 ? twist : -twist);
-    }
-    const auto places = std::span<const Place>(e.state->at).first(shape.corners);
-    const double distance =
-        CollapsedBox(places, e.level).distance_from_affine(own.net, own.degree, x, affine);
-    if (distance + residual + least_beyond_ <= tolerance_) {
-        return distance + residual + least_beyond_;
-    }
-    double off = 0;
-    for (std::size_t k = 0; k < u.size(); ++k) {
-        off = std::max(off, std::abs(own_value(e, own, k) - u[k]));
-    }
-    if (!reaches_apex(e)) beta = own.curvature->beta(shape.shape, places, e.level);
-    return std::min(distance + residual, beta + off + 2 * residual) + least_beyond_;
-}
-
-/// The polynomial of a leaf at a corner of an element below it.
-double VirtualElements::own_value(const VirtualElement& e, const OwnNet& own,
-                                  std::size_t corner) const {
-    if (own.curvature == nullptr) {
-        return own.net[net_corner(own.degree, own.factors, own.number[corner])];
-    }
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    return net_value(records_->net(leaf), leaf.degree, leaf.factors(),
-                     collapsed(point_at(e.state->at[corner], e.level)));
-}
-
-/// The coefficients of component 0 of an element below a leaf. Boxes are halved on the way down;
-/// others are parts of the leaf, whose coefficients depend on their corners alone.
-auto VirtualElements::net_of(OpenTask& task, const VirtualElement& e) const -> OwnNet {
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    if (leaf.shape == Shape::pyramid) return net_in_pyramid(task, e);
-    if (leaf.parts().is_box || e.level == 0) {
-        return {box_net_of(task, e), leaf.degree, {0, 1, 2, 3, 4, 5, 6, 7}, leaf.factors()};
-    }
-    const NetPart part =
-        part_at(leaf.factors(), std::span(e.state->at).first(e.state->shape->corners), e.level);
-    restrict_net(records_->net(leaf), leaf.degree, leaf.factors(), part, task.net.data());
-    return {task.net.data(), leaf.degree, part.number, part.factors};
-}
-
-auto VirtualElements::net_in_pyramid(OpenTask& task, const VirtualElement& e) const -> OwnNet {
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    if (task.pyramid != e.leaf) {
-        task.curvature = PyramidCurvature(records_->net(leaf), leaf.degree);
-        task.pyramid = e.leaf;
-    }
-    const CollapsedBox around(std::span<const Place>(e.state->at).first(e.state->shape->corners),
-                              e.level);
-    around.restrict_net(records_->net(leaf), leaf.degree, task.net.data());
-    return {task.net.data(), leaf.degree, {0, 1, 2, 3, 4}, leaf.factors(), &task.curvature};
-}
-
-const double* VirtualElements::box_net_of(OpenTask& task, const VirtualElement& e) const {
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    if (e.level == 0) return records_->net(leaf);
-    return nets_of_children(task, e.father()) + child_of(e) * net_size(leaf.degree, leaf.factors());
-}
-
-/// The coefficients of component 0 in all children of a box, one child behind the other.
-const double* VirtualElements::nets_of_children(OpenTask& task, const VirtualElement& e) const {
-    OpenTask::Halves& halves = task.halves[static_cast<std::size_t>(e.level)];
-    if (halves.leaf == e.leaf && halves.way == e.way) return halves.nets.data();
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
-    const double* const own = box_net_of(task, e);
-    halves.leaf = e.leaf;
-    halves.way = e.way;
-    halves.nets.resize(net_size(leaf.degree, leaf.factors()) << leaf.factors().count);
-    halve_all(own, leaf.degree, leaf.factors().count, halves.nets.data());
-    return halves.nets.data();
+    const double jump = static_cast<double>(drawn.records->leaves()[e.leaf].jump);
+    looked.error = error + drawn.rounding;
+    looked.exceeds =
+        static_cast<double>(detail::float_above(looked.error)) > drawn.tolerance + jump;
 }
 
 /// Values of all components at a new node of an element below a leaf.
-void VirtualElements::leaf_values(OpenTask& task, const VirtualElement& e, std::size_t node,
-                                  double* out) const {
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
+void VirtualElements::leaf_values(OpenTask& task, const VirtualElement& e, const Drawn& drawn,
+                                  std::size_t node, double* out) const {
+    const LeafRecords& records = *drawn.records;
+    const LeafPolynomial& leaf = records.leaves()[e.leaf];
     const ShapeParts& shape = *e.state->shape;
     const Stencil& stencil = shape.rule->new_nodes[node];
     Place at{};
@@ -225,29 +133,98 @@ void VirtualElements::leaf_values(OpenTask& task, const VirtualElement& e, std::
     }
     for (std::int64_t& x : at) x = 2 * x / stencil.count;
     if (const int part = leaf.parts().part_in(faces); part >= 0) {
-        records_->values_at(
-            records_->on_part(leaf, static_cast<std::size_t>(part), std::span(&at, 1), e.level + 1),
+        records.values_at(
+            records.on_part(leaf, static_cast<std::size_t>(part), std::span(&at, 1), e.level + 1),
             out);
         return;
     }
-    std::size_t first = 0;
+    const std::size_t components = records.components();
     if (leaf.shape == Shape::pyramid) {
         const Point inside = collapsed(point_at(at, e.level + 1));
-        for (std::size_t c = 0; c < components_; ++c) {
-            out[c] = net_value(records_->net(leaf, c), leaf.degree, leaf.factors(), inside);
+        for (std::size_t c = 0; c < components; ++c) {
+            out[c] = net_value(records.net(leaf, c), leaf.degree, leaf.factors(), inside);
         }
         return;
     }
+    std::size_t first = 0;
     if (leaf.parts().is_box) {
+        // Those that are drawn are known from the halves.
         const ChildCorner in = shape.rule->new_corner[node];
-        out[first++] =
-            nets_of_children(task, e)[in.child * net_size(leaf.degree, leaf.factors()) +
-                                      net_corner(leaf.degree, leaf.factors(), in.corner)];
+        const std::size_t number = in.child * net_size(leaf.degree, leaf.factors()) +
+                                   net_corner(leaf.degree, leaf.factors(), in.corner);
+        for (ElementNets& nets : task.nets_of(records)) out[first++] = nets.of_children(e)[number];
     }
     const NetPart point = part_at(leaf.factors(), std::span(&at, 1), e.level + 1);
-    for (std::size_t c = first; c < components_; ++c) {
-        restrict_net(records_->net(leaf, c), leaf.degree, leaf.factors(), point, out + c);
+    for (std::size_t c = first; c < components; ++c) {
+        restrict_net(records.net(leaf, c), leaf.degree, leaf.factors(), point, out + c);
     }
+}
+
+/// Positions at the corners and, behind them, at the new nodes.
+/// \param which new nodes that have true ones
+auto VirtualElements::positions(Task* task, const VirtualElement& e, NodeMask which) const
+    -> Positions {
+    Positions x{};
+    const ElementState& state = *e.state;
+    if (places_) {
+        put_places(static_cast<OpenTask&>(*task), e, which, x);
+        return x;
+    }
+    if (!data_->base->offers(Feature::new_positions)) return x;
+    const bool divided = e.leaf == VirtualElement::no_leaf;
+    const Rule& rule = divided ? *state.rule : *state.shape->rule;
+    const std::size_t corners = state.shape->corners;
+    std::copy_n(state.x.begin(), corners, x.begin());
+    NodeMask given = 0;
+    if (divided) {
+        const RedSplitKeys keys = split_keys_of(state.key, rule);
+        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+            const RealNode* const node = field_.nodes->find(keys[corners + n]);
+            const bool own = node != nullptr && !node->hangs;
+            given |= NodeMask{own} << n;
+        }
+        given &= which;
+        data_->base->new_positions(static_cast<OpenTask&>(*task).base.get(), state.base, given,
+                                   std::span(x).subspan(corners, rule.new_nodes.size()));
+    }
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        if ((given >> n & 1U) == 0) x[corners + n] = interpolate(rule.new_nodes[n], x.data());
+    }
+    return x;
+}
+
+/// The position of a node of the hierarchy, where leaves are curved.
+Point VirtualElements::position(NodeKey key) const {
+    const double* const x = places_->nodes->values(key);
+    return {x[0], x[1], x[2]};
+}
+
+/// The same as positions(), where leaves are curved.
+void VirtualElements::put_places(OpenTask& task, const VirtualElement& e, NodeMask which,
+                                 Positions& x) const {
+    const ElementState& state = *e.state;
+    const bool divided = e.leaf == VirtualElement::no_leaf;
+    const Rule& rule = divided ? *state.rule : *state.shape->rule;
+    const std::size_t corners = state.shape->corners;
+    std::copy_n(state.x.begin(), corners, x.begin());
+    const RedSplitKeys keys = divided ? split_keys_of(state.key, rule) : RedSplitKeys{};
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        Point& made = x[corners + n];
+        if ((which >> n & 1U) == 0) {
+            made = interpolate(rule.new_nodes[n], x.data());
+        } else if (divided) {
+            made = position(keys[corners + n]);
+        } else {
+            leaf_values(task, e, *places_, n, made.data());
+        }
+    }
+}
+
+void VirtualElements::new_positions(Task* task, const VirtualElement& e, NodeMask which,
+                                    std::span<Point> out) const {
+    const Positions x = positions(task, e, which);
+    std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(e.state->shape->corners), out.size(),
+                out.begin());
 }
 
 }  // namespace nestgrid::engine

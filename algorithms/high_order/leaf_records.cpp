@@ -13,11 +13,6 @@ namespace nestgrid::engine {
 
 namespace {
 
-Place reference_corner(const ShapeParts& shape, std::size_t corner) {
-    const Place& twice = shape.node[corner];
-    return {twice[0] / 2, twice[1] / 2, twice[2] / 2};
-}
-
 /// The corners of an element that make the frame of a part: that with the least key, then its
 /// neighbours in the part, the one with the lesser key first.
 std::array<std::uint8_t, 3> frame_corners(const CornerKeys& keys, const ShapePart& part) {
@@ -44,30 +39,28 @@ std::array<std::uint8_t, 3> frame_corners(const CornerKeys& keys, const ShapePar
 /// Places of the corners of a frame. \param count 2 or 3
 std::array<Place, 3> places_of(const ShapeParts& shape, const std::array<std::uint8_t, 3>& frame) {
     std::array<Place, 3> places;
-    for (std::size_t i = 0; i < 3; ++i) places[i] = reference_corner(shape, frame[i]);
+    for (std::size_t i = 0; i < 3; ++i) places[i] = shape.reference_corner(frame[i]);
     return places;
 }
-
-std::size_t frame_size(const ShapePart& part) { return part.count == 2 ? 2 : 3; }
 
 }  // namespace
 
 std::array<Place, 4> corners_of(const ShapeParts& shape, const ShapePart& part) {
     std::array<Place, 4> corners{};
     for (std::size_t i = 0; i < part.count; ++i) {
-        corners[i] = reference_corner(shape, part.corner[i]);
+        corners[i] = shape.reference_corner(part.corner[i]);
     }
     return corners;
 }
 
-LeafRecords::LeafRecords(const Hierarchy<double>& base, const BaseWalk& walk)
-    : base_{&base},
-      components_{static_cast<std::size_t>(base.facts().components)},
-      least_{std::numeric_limits<double>::infinity()},
-      greatest_{-std::numeric_limits<double>::infinity()} {
+LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk)
+    : components_{function.components()},
+      drawn_{function.drawn()},
+      least_(components_, std::numeric_limits<double>::infinity()),
+      greatest_(components_, -std::numeric_limits<double>::infinity()) {
     std::vector<double> values;
     walk.for_each([&](Task* task, std::span<const BaseElement> way) {
-        if (way.back().member->rule == nullptr) add_leaf(task, way, values);
+        if (way.back().member->rule == nullptr) add_leaf(function, task, way, values);
     });
     std::size_t leaf = 0;
     walk.for_each([&](Task*, std::span<const BaseElement> way) {
@@ -81,13 +74,13 @@ LeafRecords::LeafRecords(const Hierarchy<double>& base, const BaseWalk& walk)
 }
 
 /// Takes the polynomial of the last element on the way.
-void LeafRecords::add_leaf(Task* task, std::span<const BaseElement> way,
-                           std::vector<double>& values) {
+void LeafRecords::add_leaf(const LeafFunction& function, Task* task,
+                           std::span<const BaseElement> way, std::vector<double>& values) {
     const BaseElement& e = way.back();
-    const int degree = base_->degree(task, e.member->element);
+    const int degree = function.degree(task, e.member->element);
     if (degree < 1 || degree > max_degree) {
-        throw GridError(BaseWalk::name(way) + " has the degree " + std::to_string(degree) +
-                        ", not 1 to " + std::to_string(max_degree));
+        throw GridError(BaseWalk::name(way) + " has the " + function.degree_name() + " " +
+                        std::to_string(degree) + ", not 1 to " + std::to_string(max_degree));
     }
     const Factors& factors = e.shape->factors;
     thread_local std::map<std::pair<Shape, int>, std::vector<Point>> all_points;
@@ -97,32 +90,35 @@ void LeafRecords::add_leaf(Task* task, std::span<const BaseElement> way,
             e.shape->shape == Shape::pyramid ? pyramid_points(degree) : net_points(degree, factors);
     }
     values.resize(points.size() * components_);
-    base_->evaluate(task, e.member->element, points, values.data());
+    function.evaluate(task, e.member->element, points, values);
     LeafPolynomial leaf;
     leaf.net = nets_.size();
     leaf.degree = static_cast<std::uint8_t>(degree);
     leaf.shape = e.shape->shape;
     greatest_degree_ = std::max(greatest_degree_, degree);
+    double jump = 0;
     for (std::size_t c = 0; c < components_; ++c) {
         const std::size_t at = nets_.size();
         for (std::size_t i = 0; i < points.size(); ++i) {
             const double value = values[i * components_ + c];
             if (!std::isfinite(value)) {
-                throw GridError("evaluate() gives no finite number in " + BaseWalk::name(way));
+                throw GridError(function.operation() + " gives no finite number in " +
+                                BaseWalk::name(way));
             }
             nets_.push_back(value);
         }
         to_coefficients(nets_.data() + at, degree, factors);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            least_[c] = std::min(least_[c], nets_[at + i]);
+            greatest_[c] = std::max(greatest_[c], nets_[at + i]);
+        }
         if (leaf.shape != Shape::pyramid) continue;
         nets_.resize(at + leaf.size());
         const double* const own = nets_.data() + at;
         const double off = put_triangle_nets(own, degree, nets_.data() + at + points.size());
-        if (c == 0) leaf.jump = detail::float_above(off);
+        if (c < drawn_) jump = norm_of(2, [&](std::size_t i) { return i == 0 ? jump : off; });
     }
-    const auto [lo, hi] =
-        std::minmax_element(net(leaf), net(leaf) + static_cast<std::ptrdiff_t>(points.size()));
-    least_ = std::min(least_, *lo);
-    greatest_ = std::max(greatest_, *hi);
+    leaf.jump = detail::float_above(jump);
     const auto number = static_cast<std::uint32_t>(leaves_.size());
     for (const ShapePart& part : e.shape->parts) {
         const auto [owner, is_new] = owner_.insert(part_key(e.key, part), number);
@@ -257,13 +253,15 @@ int LeafRecords::put_record(const OnRecord& at, std::size_t component, NetRoom& 
 }
 
 NetFacts LeafRecords::facts_on(const OnRecord& part) const {
-    NetRoom whole;
-    NetRoom own;
-    const int degree = put_record(part, 0, whole);
     const Factors& factors = factors_of(records_[static_cast<std::size_t>(part.record)]);
     const NetPart there = part_at(factors, std::span(part.at).first(part.count), part.level);
-    restrict_net(whole.data(), degree, factors, there, own.data());
-    return net_facts(own.data(), degree, there.factors);
+    return joined_facts(drawn_, [&](std::size_t c) {
+        NetRoom whole;
+        NetRoom own;
+        const int degree = put_record(part, c, whole);
+        restrict_net(whole.data(), degree, factors, there, own.data());
+        return net_facts(own.data(), degree, there.factors);
+    });
 }
 
 NetFacts LeafRecords::facts_on(const LeafPolynomial& leaf, std::size_t part) const {
@@ -314,20 +312,26 @@ double LeafRecords::jump_on(const LeafPolynomial& leaf, std::size_t number) cons
     const OnRecord on = on_part(leaf, number, std::span(corners).first(part.count), 0);
     const Factors& factors = factors_of(records_[static_cast<std::size_t>(on.record)]);
     const NetPart there = part_at(factors, std::span(on.at).first(part.count), on.level);
-    NetRoom whole;
-    NetRoom other;
-    const int degree = put_record(on, 0, whole);
-    restrict_net(whole.data(), degree, factors, there, other.data());
     // The leaf's own coefficients in the same order.
     std::array<Place, 4> sorted{};
     for (std::size_t i = 0; i < part.count; ++i) sorted[there.number[i]] = corners[i];
-    NetRoom own;
-    take(leaf, 0, std::span(sorted).first(frame_size(part)), there.factors, own.data());
-    const int greatest = std::max(degree, int{leaf.degree});
-    const auto a = elevated(own.data(), leaf.degree, there.factors, greatest);
-    const auto b = elevated(other.data(), degree, there.factors, greatest);
+    std::array<std::vector<double>, 3> differences;
+    for (std::size_t c = 0; c < drawn_; ++c) {
+        NetRoom whole;
+        NetRoom other;
+        NetRoom own;
+        const int degree = put_record(on, c, whole);
+        restrict_net(whole.data(), degree, factors, there, other.data());
+        take(leaf, c, std::span(sorted).first(frame_size(part)), there.factors, own.data());
+        const int greatest = std::max(degree, int{leaf.degree});
+        differences[c] = elevated(own.data(), leaf.degree, there.factors, greatest);
+        const auto of_record = elevated(other.data(), degree, there.factors, greatest);
+        for (std::size_t i = 0; i < of_record.size(); ++i) differences[c][i] -= of_record[i];
+    }
     double jump = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) jump = std::max(jump, std::abs(a[i] - b[i]));
+    for (std::size_t i = 0; i < differences[0].size(); ++i) {
+        jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) { return differences[c][i]; }));
+    }
     return jump;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The polynomials of all leaves, and one record for each edge and face that leaves share.
+// The polynomials of all leaves, those of the field or of positions (leaf_functions.hpp), and one
+// record for each edge and face that leaves share.
 //
 // The owner of an edge or face of a leaf, among all leaves that have it in their closure, is the
 // one with the largest edge or face that it lies in; among equals that of the least degree, then
@@ -14,10 +15,12 @@
 // Every node of the hierarchy that is inside an edge or face of a larger leaf is in a record, too.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
 #include <high_order/base_walk.hpp>
+#include <high_order/leaf_functions.hpp>
 #include <high_order/pyramid.hpp>
 #include <nestgrid/detail/key_table.hpp>
 
@@ -36,7 +39,7 @@ struct OnRecord {
 struct LeafPolynomial {
     std::uint64_t net = 0;    ///< of component 0
     std::uint32_t first = 0;  ///< of its parts in the list of all
-    float jump = 0;  ///< the greatest difference of component 0 from the records and nodes around
+    float jump = 0;           ///< the greatest difference from the records and nodes around
     Shape shape = Shape::point;
     std::uint8_t degree = 1;
 
@@ -52,11 +55,14 @@ struct LeafPolynomial {
 
 class LeafRecords {
 public:
-    /// Asks the field once for each leaf. Borrows the hierarchy.
+    /// Asks the function once for each leaf.
     /// \throw GridError where a degree is not 1 to 8, or a value not finite, and names the leaf
-    LeafRecords(const Hierarchy<double>& base, const BaseWalk& walk);
+    LeafRecords(const LeafFunction& function, const BaseWalk& walk);
 
     std::size_t components() const { return components_; }
+    /// How many components are drawn: beta and jumps are norms of these together, ranges are those
+    /// of component 0.
+    std::size_t drawn() const { return drawn_; }
     const std::vector<LeafPolynomial>& leaves() const { return leaves_; }
     std::size_t leaf_at(NodeKey path) const { return *leaf_of_.find(path); }
     const double* net(const LeafPolynomial& leaf, std::size_t component = 0) const {
@@ -67,9 +73,15 @@ public:
                      int level) const;
     /// Points on an edge or face of the last element on the way.
     OnRecord around(std::span<const BaseElement> way, std::span<const Place> points);
-    /// Beta and range of component 0 on the part with these corners.
+    /// Beta and range in a leaf, without the records around.
+    NetFacts facts_of(const LeafPolynomial& leaf) const {
+        return joined_facts(drawn_, [&](std::size_t c) {
+            return net_facts(net(leaf, c), leaf.degree, leaf.factors());
+        });
+    }
+    /// Beta and range on the part with these corners.
     NetFacts facts_on(const OnRecord& part) const;
-    /// Beta and range of component 0 on a part of a leaf, read from its record.
+    /// Beta and range on a part of a leaf, read from its record.
     NetFacts facts_on(const LeafPolynomial& leaf, std::size_t part) const;
     /// Puts the points of a part of a record as points of its owner. \return the owner, a leaf
     std::uint32_t in_owner(const OnRecord& part, std::array<Place, 4>& points) const;
@@ -79,8 +91,17 @@ public:
     double jump() const;
     void raise_jump(std::size_t leaf, double jump);
     int greatest_degree() const { return greatest_degree_; }
-    double least() const { return least_; }
-    double greatest() const { return greatest_; }
+    double least() const { return least_[0]; }
+    double greatest() const { return greatest_[0]; }
+    /// From the least to the greatest of what is drawn, and its greatest magnitude.
+    double extent() const {
+        return norm_of(drawn_, [&](std::size_t c) { return greatest_[c] - least_[c]; });
+    }
+    double magnitude() const {
+        return norm_of(drawn_, [&](std::size_t c) {
+            return std::max(std::abs(least_[c]), std::abs(greatest_[c]));
+        });
+    }
     std::size_t memory_bytes() const;
     /// Forgets what around() needs.
     void finish();
@@ -106,7 +127,8 @@ private:
         std::uint32_t map;
     };
 
-    void add_leaf(Task* task, std::span<const BaseElement> way, std::vector<double>& values);
+    void add_leaf(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
+                  std::vector<double>& values);
     void add_parts(std::span<const BaseElement> way, LeafPolynomial& leaf);
     double jump_on(const LeafPolynomial& leaf, std::size_t part) const;
     void take(const LeafPolynomial& leaf, std::size_t component, std::span<const Place> frame,
@@ -115,8 +137,8 @@ private:
     const Factors& factors_of(const Record& record) const;
     int put_record(const OnRecord& at, std::size_t component, NetRoom& net) const;
 
-    const Hierarchy<double>* base_;
     std::size_t components_;
+    std::size_t drawn_;
     std::vector<LeafPolynomial> leaves_;
     std::vector<double> nets_;
     std::vector<Record> records_;
@@ -124,8 +146,8 @@ private:
     std::vector<PartRecord> of_part_;           // of the parts of all leaves
     KeyTable<NodeKey, std::uint32_t> leaf_of_;  // by path
     int greatest_degree_ = 1;
-    double least_;
-    double greatest_;
+    std::vector<double> least_;  // of each component
+    std::vector<double> greatest_;
     // Until finish():
     std::vector<CornerKeys> corners_;                // of the leaves
     KeyTable<NodeKey, std::uint32_t> owner_;         // of parts of leaves

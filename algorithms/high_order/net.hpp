@@ -20,6 +20,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -99,6 +100,21 @@ struct NetFacts {
 
 /// Bounds by the second differences along each edge of each factor (docs/closed_surfaces.md).
 NetFacts net_facts(const double* net, int degree, const Factors& factors);
+
+/// Those of several polynomials together: beta is the norm of theirs, the range that of the first.
+/// \param facts called with 0 to count - 1
+template <class Facts>
+NetFacts joined_facts(std::size_t count, const Facts& facts) {
+    NetFacts joined = facts(std::size_t{0});
+    if (count == 1) return joined;
+    double sum = joined.beta * joined.beta;
+    for (std::size_t c = 1; c < count; ++c) {
+        const double beta = facts(c).beta;
+        sum += beta * beta;
+    }
+    joined.beta = std::sqrt(sum);
+    return joined;
+}
 
 /// The affine function that fits values at the corners best, and the greatest residual there.
 struct AffineFit {

@@ -19,22 +19,32 @@ class PolynomialPoints {
 public:
     PolynomialPoints(const HighOrder& data, std::span<const Point> points)
         : data_{data.data_.get()} {
-        // At a tolerance that all leaves are within, elements are those of the hierarchy.
-        const VirtualRefinement leaves(data, {.tolerance = std::numeric_limits<double>::max()});
+        // At a tolerance that all leaves are within, elements are those of the hierarchy, and where
+        // leaves are curved parts of them.
+        const double near = data_->places ? 1e-3 * data_->places->records.extent() : 0;
+        const VirtualRefinement leaves(
+            data, {.tolerance = std::numeric_limits<double>::max(), .position_tolerance = near});
         probed = probe<double>(leaves, points);
         const auto elements = probed.elements.as<VirtualElement>();
+        place_.resize(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
-            leaf_.push_back(probed.found(i) ? elements[probed.element_of[i]].leaf
-                                            : VirtualElement::no_leaf);
+            leaf_.push_back(VirtualElement::no_leaf);
+            if (!probed.found(i)) continue;
+            const VirtualElement& e = elements[probed.element_of[i]];
+            leaf_[i] = e.leaf;
+            const LeafPolynomial& leaf = data_->field.records.leaves()[e.leaf];
+            const Point at = in_leaf(leaf.parts(), e, probed.reference[i]);
+            place_[i] = leaf.shape == Shape::pyramid ? collapsed(at) : at;
+            if (data_->places) place_[i] = found_in(leaf_[i], points[i], place_[i]);
         }
     }
 
     /// The values of all components at a point that was found.
     void put_values(std::size_t i) {
-        const LeafPolynomial& leaf = data_->records.leaves()[leaf_[i]];
+        const LeafPolynomial& leaf = data_->field.records.leaves()[leaf_[i]];
         for (std::size_t c = 0; c < probed.components; ++c) {
-            probed.values[i * probed.components + c] =
-                net_value(data_->records.net(leaf, c), leaf.degree, leaf.factors(), place(i, leaf));
+            probed.values[i * probed.components + c] = net_value(
+                data_->field.records.net(leaf, c), leaf.degree, leaf.factors(), place_[i]);
         }
     }
 
@@ -60,21 +70,66 @@ public:
     ProbeResult probed;
 
 private:
-    /// The probed point in the coordinates of its leaf's net: those of the reference element, but
-    /// in a pyramid those of the collapsed box.
-    Point place(std::size_t i, const LeafPolynomial& leaf) const {
-        const Point& at = probed.reference[i];
-        return leaf.shape == Shape::pyramid ? collapsed(at) : at;
+    /// A point of an element below a leaf in the reference element of that.
+    static Point in_leaf(const ShapeParts& leaf, const VirtualElement& e, const Point& reference) {
+        const ShapeParts* shape = &leaf;
+        std::array<Place, max_corners> at{};
+        for (std::size_t k = 0; k < leaf.corners; ++k) at[k] = leaf.reference_corner(k);
+        for (int level = e.level; level > 0; --level) {
+            const Child& child = shape->rule->children[e.way >> 4 * (level - 1) & 15U];
+            at = child_places(*shape, at, child);
+            shape = &parts_of(child.shape);
+        }
+        const Point origin = point_at(at[0], e.level);
+        Point x = origin;
+        for (std::size_t d = 0; d < shape->dimension; ++d) {
+            x = x + reference[d] * (point_at(at[shape->axis[d]], e.level) - origin);
+        }
+        return x;
+    }
+    /// Newton's method for the place of a point in a curved leaf, from one that is near.
+    Point found_in(std::uint32_t leaf, const Point& x, const Point& near) const {
+        const LeafRecords& records = data_->places->records;
+        const LeafPolynomial& of = records.leaves()[leaf];
+        Point at = near;
+        for (int step = 0; step < 20; ++step) {
+            Point off;
+            for (std::size_t d = 0; d < 3; ++d) {
+                off[d] = x[d] - net_value(records.net(of, d), of.degree, of.factors(), at);
+            }
+            const auto dual = dual_vectors(axes_at(leaf, at), int(of.parts().dimension));
+            if (dual.volume == 0) break;
+            Point move{0, 0, 0};
+            for (std::size_t d = 0; d < of.parts().dimension; ++d) {
+                move[d] = dot(dual.of[d], off) / dual.volume;
+            }
+            at = at + move;
+            if (norm(at - near) > 0.5) return near;
+            if (norm(move) < 1e-14) break;
+        }
+        return at;
+    }
+    /// Derivatives of the position in a curved leaf along the axes.
+    std::array<Point, 3> axes_at(std::uint32_t leaf, const Point& at) const {
+        const LeafRecords& records = data_->places->records;
+        const LeafPolynomial& of = records.leaves()[leaf];
+        std::array<Point, 3> along{};
+        for (std::size_t d = 0; d < 3; ++d) {
+            const Point slope = net_gradient(records.net(of, d), of.degree, of.factors(), at);
+            for (std::size_t axis = 0; axis < 3; ++axis) along[axis][d] = slope[axis];
+        }
+        return along;
     }
     Point gradient(std::size_t i, const BaseElement& e) const {
-        const LeafPolynomial& leaf = data_->records.leaves()[leaf_[i]];
+        const LeafPolynomial& leaf = data_->field.records.leaves()[leaf_[i]];
         const Factors& factors = leaf.factors();
-        Point at = place(i, leaf);
+        Point at = place_[i];
         // The apex of a pyramid has no gradient: that of a point below.
         if (leaf.shape == Shape::pyramid) at[2] = std::min(at[2], 1 - 1e-6);
-        const Point inner = net_gradient(data_->records.net(leaf), leaf.degree, factors, at);
+        const Point inner = net_gradient(data_->field.records.net(leaf), leaf.degree, factors, at);
         std::array<Point, 3> along{};  // derivatives of the position
-        for (std::size_t d = 0; d < 3; ++d) {
+        if (data_->places) along = axes_at(leaf_[i], at);
+        for (std::size_t d = 0; d < 3 && !data_->places; ++d) {
             std::array<double, max_corners> x{};
             x.fill(e.x[e.shape->corners - 1][d]);  // the apex is four corners of the box
             for (std::size_t k = 0; k < e.shape->corners; ++k) {
@@ -88,6 +143,7 @@ private:
 
     const HighOrderData* data_;
     std::vector<std::uint32_t> leaf_;
+    std::vector<Point> place_;  // in the coordinates of the leaf's net: in a pyramid the box's
 };
 
 }  // namespace engine

@@ -34,7 +34,10 @@ void raise(float& number, double to) {
 class RealNodes::Preroll {
 public:
     Preroll(RealNodes& nodes, const BaseWalk& walk, LeafRecords& records)
-        : nodes_{&nodes}, records_{&records}, components_{records.components()} {
+        : nodes_{&nodes},
+          records_{&records},
+          components_{records.components()},
+          drawn_{records.drawn()} {
         walk.for_each([this](Task*, std::span<const BaseElement> way) {
             if (way.back().member->rule == nullptr) add_leaf(way);
         });
@@ -54,7 +57,9 @@ public:
 
 private:
     RealNode& node(std::uint32_t number) { return nodes_->nodes_[number]; }
-    double value(std::uint32_t number) const { return nodes_->values_[number * components_]; }
+    double value(std::uint32_t number, std::size_t c) const {
+        return nodes_->values_[number * components_ + c];
+    }
 
     /// Makes the corners of a leaf known. A corner inside a larger leaf's part has the value of the
     /// record, any other that of the first leaf that has it.
@@ -74,8 +79,7 @@ private:
                 }
             }
             if (node(leaf.corner[k]).hangs) continue;
-            const Place& twice = e.shape->node[k];
-            const Place place{twice[0] / 2, twice[1] / 2, twice[2] / 2};
+            const Place place = e.shape->reference_corner(k);
             const OnRecord hangs_on = records_->around(way, std::span(&place, 1));
             if (hangs_on.record < 0) continue;
             node(leaf.corner[k]).hangs = true;
@@ -117,16 +121,19 @@ private:
     /// Fathers come first: what moves the parents is known.
     void put_offsets(const Split& split) {
         const auto corners = static_cast<std::size_t>(split.rule->corner_count());
-        std::array<double, max_split_nodes> u;
-        for (std::size_t n = 0; n < corners + split.rule->new_nodes.size(); ++n) {
-            u[n] = value(split.node[n]);
+        std::array<std::array<double, max_split_nodes>, 3> u;
+        for (std::size_t c = 0; c < drawn_; ++c) {
+            for (std::size_t n = 0; n < corners + split.rule->new_nodes.size(); ++n) {
+                u[c][n] = value(split.node[n], c);
+            }
         }
         for (std::size_t n = 0; n < split.rule->new_nodes.size(); ++n) {
             const Stencil& stencil = split.rule->new_nodes[n];
             const std::uint32_t number = split.node[corners + n];
             RealNode& made = node(number);
-            double off =
-                std::abs(u[corners + n] - nestgrid::detail::interpolate(stencil, u.data(), 1));
+            double off = norm_of(drawn_, [&](std::size_t c) {
+                return u[c][corners + n] - nestgrid::detail::interpolate(stencil, u[c].data(), 1);
+            });
             double moved = 0;
             for (std::size_t i = 0; i < stencil.count; ++i) {
                 moved = std::max(moved, deviation_[split.node[stencil.parent[i]]]);
@@ -143,7 +150,7 @@ private:
     void seed(const Leaf& leaf) {
         const LeafPolynomial& of = records_->leaves()[leaf.leaf];
         const std::size_t corners = of.parts().corners;
-        NetFacts facts = net_facts(records_->net(of), of.degree, of.factors());
+        NetFacts facts = records_->facts_of(of);
         double error = facts.beta;
         double flatness = facts.beta;
         for (std::size_t part = 0; part < of.parts().parts.size(); ++part) {
@@ -157,15 +164,19 @@ private:
         double jump = 0;
         double moved = 0;
         for (std::size_t k = 0; k < corners; ++k) {
-            const double u = value(leaf.corner[k]);
-            const double own = records_->net(of)[net_corner(of.degree, of.factors(), k)];
-            lo = std::min(lo, u);
-            hi = std::max(hi, u);
-            jump = std::max(jump, std::abs(own - u));
+            lo = std::min(lo, value(leaf.corner[k], 0));
+            hi = std::max(hi, value(leaf.corner[k], 0));
+            const std::size_t own = net_corner(of.degree, of.factors(), k);
+            jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) {
+                                return records_->net(of, c)[own] - value(leaf.corner[k], c);
+                            }));
             moved = std::max(moved, deviation_[leaf.corner[k]]);
         }
         records_->raise_jump(leaf.leaf, jump);
-        error = std::max({error + jump, facts.greatest - hi, lo - facts.least}) + moved;
+        // What is inside parts is that of the records, which are off by of.jump.
+        error += drawn_ == 1 ? jump : jump + static_cast<double>(of.jump);
+        if (drawn_ == 1) error = std::max({error, facts.greatest - hi, lo - facts.least});
+        error += moved;
         for (std::size_t k = 0; k < corners; ++k) {
             RealNode& corner = node(leaf.corner[k]);
             raise(corner.bound, error);
@@ -211,8 +222,6 @@ private:
     /// 0 on simplices. Together that is 6 bound + 2 residual, or 19 / 3, or 3, or 1.
     void put_stop(const Split& split) {
         const auto corners = static_cast<std::size_t>(split.rule->corner_count());
-        std::array<double, max_corners> u;
-        for (std::size_t k = 0; k < corners; ++k) u[k] = value(split.node[k]);
         const Shape shape = split.rule->parent;
         const Factors factors = factors_of(shape);
         const bool pyramid = shape == Shape::pyramid;
@@ -220,8 +229,12 @@ private:
                              : factors.count == 1     ? 1
                              : factors.all_segments() ? 6
                                                       : 19.0 / 3;
-        const double residual = pyramid ? pyramid_residual(u)
-                                        : fit_affine(std::span(u).first(corners), factors).residual;
+        const double residual = norm_of(drawn_, [&](std::size_t c) {
+            std::array<double, max_corners> u;
+            for (std::size_t k = 0; k < corners; ++k) u[k] = value(split.node[k], c);
+            return pyramid ? pyramid_residual(u)
+                           : fit_affine(std::span(u).first(corners), factors).residual;
+        });
         double below = 0;
         for (const std::uint32_t made : made_by(split)) {
             below = std::max(below, static_cast<double>(node(made).bound));
@@ -253,14 +266,15 @@ private:
     RealNodes* nodes_;
     LeafRecords* records_;
     std::size_t components_;
+    std::size_t drawn_;
     std::vector<Leaf> leaves_;
     std::vector<Split> splits_;      // coarse to fine
     std::vector<double> deviation_;  // how far P_S U may be from U at a node that hangs
     std::vector<bool> done_;
 };
 
-RealNodes::RealNodes(const Hierarchy<double>& base, const BaseWalk& walk, LeafRecords& records)
-    : records_{&records}, epoch_{base.epoch()} {
+RealNodes::RealNodes(std::uint64_t epoch, const BaseWalk& walk, LeafRecords& records)
+    : records_{&records}, epoch_{epoch} {
     Preroll(*this, walk, records).run();
     nodes_.shrink_to_fit();
     parts_.shrink_to_fit();

@@ -46,7 +46,8 @@ struct RealNode {
 class RealNodes final : public Bounds {
 public:
     /// Borrows the records.
-    RealNodes(const Hierarchy<double>& base, const BaseWalk& walk, LeafRecords& records);
+    /// \param epoch of the hierarchy
+    RealNodes(std::uint64_t epoch, const BaseWalk& walk, LeafRecords& records);
 
     const RealNode* find(NodeKey key) const {
         const std::uint32_t* const at = number_.find(key);

@@ -39,6 +39,11 @@ struct ShapeParts {
     std::vector<Place> node;             ///< of the red rule, the corners first, in units of 1 / 2
     std::array<std::uint8_t, 3> axis{};  ///< the corner at the end of each axis from corner 0
 
+    /// A corner of the reference element.
+    Place reference_corner(std::size_t corner) const {
+        const Place& twice = node[corner];
+        return {twice[0] / 2, twice[1] / 2, twice[2] / 2};
+    }
     /// The faces that a point lies in. \param at in units of 2^-level
     FaceMask faces_at(const Place& at, int level) const;
     /// Number of the part that all these faces, and no others, are around; or inside, or at_corner.
@@ -57,6 +62,9 @@ private:
     std::vector<Plane> planes_;
     std::array<std::int8_t, 1U << max_faces> part_in_{};
 };
+
+/// How many corners make the frame of a part: one, and its neighbours.
+inline std::size_t frame_size(const ShapePart& part) { return part.count == 2 ? 2 : 3; }
 
 /// \param shape of dimension 2 or 3
 const ShapeParts& parts_of(Shape shape);

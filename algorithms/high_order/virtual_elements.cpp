@@ -19,29 +19,48 @@ struct VirtualElements::Places {
     Family base;
 };
 
+namespace {
+
+/// \param name of the tolerance \param of what the extent is
+void require_tolerance(double tolerance, const std::string& name, double extent,
+                       const std::string& of) {
+    if (!(tolerance > 0) || !std::isfinite(tolerance)) {
+        throw InvalidInput("the " + name + " is not a positive number");
+    }
+    if (tolerance < 1e-12 * extent) {
+        throw InvalidInput("the " + name + " is below 1e-12 of the " + of + ", which is " +
+                           std::to_string(extent));
+    }
+}
+
+}  // namespace
+
+/// Positions within the tolerance that the options ask for; nothing where leaves are straight.
+auto VirtualElements::places_within(const HighOrderData& data, const VirtualOptions& options)
+    -> std::optional<Drawn> {
+    if (!data.places) return std::nullopt;
+    const double own = options.position_tolerance;
+    return Drawn(*data.places, own == 0 ? data.default_position_tolerance(options.tolerance) : own);
+}
+
 VirtualElements::VirtualElements(std::shared_ptr<const HighOrderData> data,
                                  const VirtualOptions& options)
     : data_{std::move(data)},
-      records_{&data_->records},
-      nodes_{&data_->nodes},
-      components_{records_->components()},
-      tolerance_{options.tolerance},
-      flat_{options.tolerance / flat_share},
+      field_{data_->field, options.tolerance},
+      places_{places_within(*data_, options)},
+      components_{field_.records->components()},
       depth_{options.depth},
-      lens_{options.lens
-                ? std::make_shared<const LensSizes>(*options.lens, *records_, data_->corners())
-                : nullptr},
-      criterion_{*nodes_, options.tolerance, lens_} {
-    const double size = std::max(std::abs(records_->least()), std::abs(records_->greatest()));
-    least_beyond_ = 1e-14 * size;
-    linear_ = records_->greatest_degree() == 1 && records_->jump() <= 1e-12 * size;
-    const double least = 1e-12 * (records_->greatest() - records_->least());
-    if (!(tolerance_ > 0) || !std::isfinite(tolerance_)) {
-        throw InvalidInput("the tolerance is not a positive number");
-    }
-    if (tolerance_ < least) {
-        throw InvalidInput("the tolerance is below 1e-12 of the range of the data, which is " +
-                           std::to_string(records_->greatest() - records_->least()));
+      lens_{options.lens ? std::make_shared<const LensSizes>(*options.lens, *field_.records,
+                                                             data_->corners())
+                         : nullptr},
+      criterion_{field_, places_, lens_} {
+    const LeafRecords& records = *field_.records;
+    linear_ =
+        records.greatest_degree() == 1 && records.jump() <= 1e-12 * records.magnitude() && !places_;
+    require_tolerance(field_.tolerance, "tolerance", records.extent(), "range of the data");
+    if (places_) {
+        require_tolerance(places_->tolerance, "tolerance of positions", places_->records->extent(),
+                          "diameter of the domain");
     }
     if (depth_ < 1 || depth_ > 16) {
         throw InvalidInput("the depth is " + std::to_string(depth_) + ", not 1 to 16");
@@ -51,10 +70,12 @@ VirtualElements::VirtualElements(std::shared_ptr<const HighOrderData> data,
 NodeMask VirtualElements::Stops::holds(const NewNodes& nodes) const {
     NodeMask mask = 0;
     for (std::size_t n = 0; n < nodes.keys.size(); ++n) {
-        const RealNode* const node = nodes_->find(nodes.keys[n]);
-        const bool stops = node != nullptr && static_cast<double>(node->stop) <= tolerance_ &&
-                           (lens_ == nullptr ||
-                            lens_->may_stop(static_cast<double>(node->size), nodes.positions[n]));
+        const auto fine_enough = [&] {
+            const double size = static_cast<double>(field_.nodes->find(nodes.keys[n])->size);
+            return lens_ == nullptr || lens_->may_stop(size, nodes.positions[n]);
+        };
+        const bool stops = field_.stops(nodes.keys[n]) &&
+                           (!places_ || places_->stops(nodes.keys[n])) && fine_enough();
         mask |= NodeMask{stops} << n;
     }
     return mask & ~nodes.outside;
@@ -63,7 +84,13 @@ NodeMask VirtualElements::Stops::holds(const NewNodes& nodes) const {
 std::unique_ptr<Task> VirtualElements::open() const {
     auto task = std::make_unique<OpenTask>();
     task->base = data_->base->open();
-    task->halves.resize(static_cast<std::size_t>(depth_) + 1);
+    const auto add_nets = [&](const Drawn& drawn, std::vector<ElementNets>& nets) {
+        for (std::size_t c = 0; c < drawn.records->drawn(); ++c) {
+            nets.emplace_back(*drawn.records, c, depth_);
+        }
+    };
+    add_nets(field_, task->field);
+    if (places_) add_nets(*places_, task->places);
     return task;
 }
 
@@ -77,9 +104,9 @@ auto VirtualElements::places(Family& family, std::size_t count) -> Places& {
 /// Sets the number of the leaf, where the hierarchy does not divide the element.
 void VirtualElements::set_leaf(VirtualElement& e, const Member& member, ElementState& state) const {
     if (member.rule != nullptr) return;
-    e.leaf = static_cast<std::uint32_t>(records_->leaf_at(state.path));
+    e.leaf = static_cast<std::uint32_t>(field_.records->leaf_at(state.path));
     for (std::size_t k = 0; k < state.shape->corners; ++k) {
-        for (std::size_t d = 0; d < 3; ++d) state.at[k][d] = state.shape->node[k][d] / 2;
+        state.at[k] = state.shape->reference_corner(k);
     }
 }
 
@@ -91,12 +118,15 @@ void VirtualElements::coarse(Task* task, std::size_t i, Coarse& coarse, Family& 
     data_->base->coarse(own.base.get(), i, coarse, places.base);
     const Member& base = places.base.members[0];
     ElementState& state = places.states[0];
+    for (std::size_t k = 0; places_ && k < topology(coarse.shape).corners; ++k) {
+        coarse.corners[k] = position(coarse_key(coarse.ids[k]));
+    }
     state = {base.element,   base.rule, &parts_of(coarse.shape), {}, coarse_path(i),
              coarse.corners, {}};
     std::array<double, max_corners> u{};
     for (std::size_t k = 0; k < state.shape->corners; ++k) {
         state.key[k] = coarse_key(coarse.ids[k]);
-        if (!linear_) u[k] = nodes_->values(state.key[k])[0];
+        if (!linear_) u[k] = field_.nodes->values(state.key[k])[0];
     }
     own.coarse = i;
     own.key = state.key;
@@ -116,7 +146,7 @@ NodeMask VirtualElements::coarse_values(Task* task, std::size_t i, std::span<dou
         std::transform(coarse.ids.begin(), coarse.ids.end(), own.key.begin(), coarse_key);
     }
     for (std::size_t k = 0; k < out.size() / components_; ++k) {
-        const double* const values = nodes_->values(own.key[k]);
+        const double* const values = field_.nodes->values(own.key[k]);
         std::copy_n(values, components_,
                     out.begin() + static_cast<std::ptrdiff_t>(k * components_));
     }
@@ -134,14 +164,16 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
     const std::size_t corners = father.shape->corners;
     const std::size_t nodes = rule.new_nodes.size();
     std::array<double, max_split_nodes> u{};  // component 0 at the corners and new nodes
+    const Positions x = positions(task, e, values != nullptr ? which : rule.all());
     if (values != nullptr) {
         new_values(task, e, which, values);
         for (std::size_t n = 0; n < corners + nodes; ++n) u[n] = values[n * components_];
     } else {
         which = 0;
-        const OwnNet net = divided ? OwnNet{} : net_of(own, e);
+        const OwnNet net = divided ? OwnNet{} : own.field[0].of(e);
         for (std::size_t k = 0; k < corners; ++k) {
-            u[k] = divided ? nodes_->values(father.key[k])[0] : own_value(e, net, k);
+            u[k] = divided ? field_.nodes->values(father.key[k])[0]
+                           : own.field[0].at_corner(e, net, k);
         }
     }
     for (std::size_t n = 0; n < nodes; ++n) {
@@ -154,7 +186,6 @@ void VirtualElements::enter(Task* task, const VirtualElement& e, NodeMask which,
         data_->base->enter(own.base.get(), father.base, rule, 0, nullptr, wanted, places.base);
     }
     const RedSplitKeys keys = split_keys_of(father.key, rule);
-    const Positions x = positions(task, e, which);
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
         if ((wanted >> c & 1U) == 0) continue;
         const Child& made = rule.children[c];
@@ -189,20 +220,7 @@ void VirtualElements::set_child(const VirtualElement& father, std::size_t child,
     e.leaf = father.leaf;
     e.level = father.level + 1;
     e.way = father.way << 4U | child;
-    const Rule& rule = *above.shape->rule;
-    for (std::size_t k = 0; k < state.shape->corners; ++k) {
-        const std::size_t node = rule.children[child].corner[k];
-        if (node < above.shape->corners) {
-            for (std::size_t d = 0; d < 3; ++d) state.at[k][d] = 2 * above.at[node][d];
-            continue;
-        }
-        const Stencil& stencil = rule.new_nodes[node - above.shape->corners];
-        for (std::size_t d = 0; d < 3; ++d) {
-            std::int64_t sum = 0;
-            for (std::size_t i = 0; i < stencil.count; ++i) sum += above.at[stencil.parent[i]][d];
-            state.at[k][d] = 2 * sum / stencil.count;
-        }
-    }
+    state.at = child_places(*above.shape, above.at, above.shape->rule->children[child]);
 }
 
 /// Sets a member of a family to an element.
@@ -216,7 +234,7 @@ void VirtualElements::describe(OpenTask& task, const VirtualElement& e, const do
     InnerBounds& inner = family.inner[number];
     inner = {};
     if (e.leaf == VirtualElement::no_leaf) {
-        describe_split(e, member);
+        describe_split(e, member, inner);
     } else {
         describe_leaf(task, e, u, member, inner);
     }
@@ -224,46 +242,65 @@ void VirtualElements::describe(OpenTask& task, const VirtualElement& e, const do
 }
 
 /// An element that the hierarchy itself divides.
-void VirtualElements::describe_split(const VirtualElement& e, Member& member) const {
+void VirtualElements::describe_split(const VirtualElement& e, Member& member,
+                                     InnerBounds& inner) const {
     member.rule = e.state->rule;
     const std::size_t corners = e.state->shape->corners;
     const RedSplitKeys keys = split_keys_of(e.state->key, *member.rule);
     for (std::size_t n = 0; n < member.rule->new_nodes.size(); ++n) {
-        const RealNode* const node = nodes_->find(keys[corners + n]);
-        if (node == nullptr) continue;
-        const bool flat =
-            node->hangs && is_flat(node->beta, node->shift, [&] {
-                return node->halves == 0 || lens_->is_fine(nodes_->part_halved(*node));
-            });
+        const NodeKey key = keys[corners + n];
+        const bool flat = hangs_flat(field_, key) && (!places_ || hangs_flat(*places_, key));
         member.constrained |= NodeMask{flat} << n;
+        const RealNode* const node = places_ ? places_->nodes->find(key) : nullptr;
+        if (node == nullptr) continue;
+        inner.position_error = std::max(inner.position_error, node->stop);
+        inner.beyond_hull = std::max(inner.beyond_hull, node->bound);
     }
+}
+
+/// Whether a node of the hierarchy hangs on a part that is flat.
+bool VirtualElements::hangs_flat(const Drawn& drawn, NodeKey key) const {
+    const RealNode* const node = drawn.nodes->find(key);
+    return node != nullptr && node->hangs && is_flat(drawn, node->beta, node->shift, [&] {
+               return node->halves == 0 || lens_->is_fine(drawn.nodes->part_halved(*node));
+           });
 }
 
 /// A leaf, or an element below one.
 void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, const double* u,
                                     Member& member, InnerBounds& inner) const {
     if (linear_) return;  // values at corners say all
-    const LeafPolynomial& leaf = records_->leaves()[e.leaf];
     const ShapeParts& shape = *e.state->shape;
-    const OwnNet own = net_of(task, e);
-    const Looked looked = look(e, own);
-    std::array<double, max_corners> sorted{};
-    for (std::size_t k = 0; k < shape.corners; ++k) sorted[own.number[k]] = u[k];
-    const auto corners = std::span<const double>(sorted).first(shape.corners);
-    const double error = drawn_error(e, own, looked.facts.beta, corners);
-    const double allowed = tolerance_ + static_cast<double>(leaf.jump);
-    const bool exceeds = static_cast<double>(detail::float_above(error)) > allowed;
-    if (looked.all_flat && (!exceeds || e.level >= depth_)) {
-        inner.error = detail::float_above(error);
+    const std::span<const double> corners(u, shape.corners);
+    const Looked looked = look(task, e, field_, corners);
+    NodeMask flat = looked.flat;
+    bool all_flat = looked.all_flat;
+    bool exceeds = looked.exceeds;
+    if (places_) {
+        std::array<double, std::size_t{3} * max_corners> x;
+        for (std::size_t i = 0; i < 3 * shape.corners; ++i) {
+            x[i] = e.state->x[i % shape.corners][i / shape.corners];
+        }
+        const Looked at = look(task, e, *places_, std::span(x).first(3 * shape.corners));
+        flat &= at.flat;
+        all_flat &= at.all_flat;
+        exceeds |= at.exceeds;
+        inner.position_error = detail::float_above(at.error);
+        inner.beyond_hull =
+            detail::float_above(at.facts.beta + at.corner_error + places_->rounding +
+                                static_cast<double>(places_->records->leaves()[e.leaf].jump));
+    }
+    if (all_flat && (!exceeds || e.level >= depth_)) {
+        inner.error = detail::float_above(looked.error);
         inner.limited = exceeds;
         return;
     }
     member.rule = shape.rule;
-    member.constrained = looked.flat;
+    member.constrained = flat;
     member.outside = shape.rule->all();
     const auto [lo, hi] = std::minmax_element(corners.begin(), corners.end());
     inner.beyond = detail::float_above(
-        std::max({0.0, looked.facts.greatest - *hi, *lo - looked.facts.least}) + least_beyond_);
+        std::max({0.0, looked.facts.greatest - *hi, *lo - looked.facts.least}) + field_.rounding);
 }
 
 void VirtualElements::new_values(Task* task, const VirtualElement& e, NodeMask which,
@@ -276,48 +313,12 @@ void VirtualElements::new_values(Task* task, const VirtualElement& e, NodeMask w
     for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
         if ((which >> n & 1U) == 0) continue;
         if (divided) {
-            std::copy_n(nodes_->values(keys[e.state->shape->corners + n]), components_,
+            std::copy_n(field_.nodes->values(keys[e.state->shape->corners + n]), components_,
                         out + n * components_);
         } else {
-            leaf_values(static_cast<OpenTask&>(*task), e, n, out + n * components_);
+            leaf_values(static_cast<OpenTask&>(*task), e, field_, n, out + n * components_);
         }
     }
-}
-
-/// Positions at the corners and, behind them, at the new nodes.
-/// \param which new nodes that have true ones
-auto VirtualElements::positions(Task* task, const VirtualElement& e, NodeMask which) const
-    -> Positions {
-    Positions x{};
-    if (!data_->base->offers(Feature::new_positions)) return x;
-    const ElementState& state = *e.state;
-    const bool divided = e.leaf == VirtualElement::no_leaf;
-    const Rule& rule = divided ? *state.rule : *state.shape->rule;
-    const std::size_t corners = state.shape->corners;
-    std::copy_n(state.x.begin(), corners, x.begin());
-    NodeMask given = 0;
-    if (divided) {
-        const RedSplitKeys keys = split_keys_of(state.key, rule);
-        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-            const RealNode* const node = nodes_->find(keys[corners + n]);
-            const bool own = node != nullptr && !node->hangs;
-            given |= NodeMask{own} << n;
-        }
-        given &= which;
-        data_->base->new_positions(static_cast<OpenTask&>(*task).base.get(), state.base, given,
-                                   std::span(x).subspan(corners, rule.new_nodes.size()));
-    }
-    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-        if ((given >> n & 1U) == 0) x[corners + n] = interpolate(rule.new_nodes[n], x.data());
-    }
-    return x;
-}
-
-void VirtualElements::new_positions(Task* task, const VirtualElement& e, NodeMask which,
-                                    std::span<Point> out) const {
-    const Positions x = positions(task, e, which);
-    std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(e.state->shape->corners), out.size(),
-                out.begin());
 }
 
 /// Faces on the boundary of the domain, where the hierarchy tells those of its elements.
@@ -325,7 +326,7 @@ unsigned VirtualElements::boundary(Task* task, const VirtualElement& e) const {
     const ElementState& state = *e.state;
     unsigned faces = 0;
     const ShapeParts& around =
-        e.leaf == VirtualElement::no_leaf ? *state.shape : records_->leaves()[e.leaf].parts();
+        e.leaf == VirtualElement::no_leaf ? *state.shape : field_.records->leaves()[e.leaf].parts();
     data_->base->corners(static_cast<OpenTask&>(*task).base.get(), state.base, around.corners,
                          nullptr, nullptr, &faces);
     if (e.level == 0) return faces;

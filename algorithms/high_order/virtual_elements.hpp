@@ -18,6 +18,7 @@
 #include <mutex>
 #include <optional>
 
+#include <high_order/element_nets.hpp>
 #include <high_order/lens_sizes.hpp>
 #include <high_order/real_nodes.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
@@ -25,45 +26,39 @@
 
 namespace nestgrid::engine {
 
+/// The polynomials of the leaves, and the nodes that the hierarchy itself makes.
+struct LeafPolynomials {
+    LeafRecords records;
+    RealNodes nodes;
+
+    LeafPolynomials(const LeafFunction& function, const BaseWalk& walk, std::uint64_t epoch)
+        : records{function, walk}, nodes{epoch, walk, records} {
+        records.finish();
+    }
+    std::size_t memory_bytes() const { return records.memory_bytes() + nodes.memory_bytes(); }
+};
+
 /// What is made once per solution.
 struct HighOrderData {
     std::optional<WidenedHierarchy<float>> widened;  // where the values are float
     const Hierarchy<double>* base;
     BaseWalk walk;
-    LeafRecords records;
-    RealNodes nodes;
+    LeafPolynomials field;
+    std::optional<LeafPolynomials> places;  // where a leaf is curved
 
     explicit HighOrderData(const Hierarchy<float>& single);
     explicit HighOrderData(const Hierarchy<double>& base);
 
+    /// The tolerance of positions beside one of the data that asks for none.
+    double default_position_tolerance(double tolerance) const;
     /// Made when a lens first asks for them.
     const LeafCorners& corners() const;
 
 private:
+    void look_at_places();
+
     mutable std::once_flag corners_made_;
     mutable std::optional<LeafCorners> corners_;
-};
-
-/// What is known of an element besides its name.
-struct ElementState {
-    Handle base;                 // the element of the hierarchy, or the leaf it lies in
-    const Rule* rule = nullptr;  // of that element
-    const ShapeParts* shape = nullptr;
-    CornerKeys key{};
-    NodeKey path = 0;                     // of that element
-    std::array<Point, max_corners> x{};   // of the corners, where the hierarchy has positions
-    std::array<Place, max_corners> at{};  // in the leaf, in units of 2^-level
-};
-
-/// An element of the hierarchy, or one below a leaf.
-struct VirtualElement {
-    static constexpr std::uint32_t no_leaf = 0xFFFFFFFFU;
-    std::uint32_t leaf = no_leaf;  // none: an element that the hierarchy itself divides
-    std::int32_t level = 0;        // below the leaf
-    std::uint64_t way = 0;         // the numbers of children from the leaf on, 4 bits each
-    const ElementState* state = nullptr;
-
-    VirtualElement father() const { return {leaf, level - 1, way >> 4U, nullptr}; }
 };
 
 class VirtualElements {
@@ -80,97 +75,110 @@ public:
                Family& family) const;
     void new_values(Task* task, const VirtualElement& e, NodeMask which, double* values) const;
     unsigned boundary(Task* task, const VirtualElement& e) const;
-    /// Positions of new nodes: true ones of the hierarchy; means of the parents where these hang,
-    /// and below leaves, whose edges are straight.
+    /// Positions of new nodes: those of curved leaves. In straight ones true ones of the hierarchy;
+    /// means of the parents where these hang, and below leaves.
     void new_positions(Task* task, const VirtualElement& e, NodeMask which,
                        std::span<Point> out) const;
 
 private:
+    /// Polynomials with the tolerance that they are drawn within.
+    struct Drawn {
+        const LeafRecords* records = nullptr;
+        const RealNodes* nodes = nullptr;
+        double tolerance = 0;
+        double flat = 0;      // beta of what is flat
+        double rounding = 0;  // added to bounds
+
+        Drawn(const LeafPolynomials& of, double within)
+            : records{&of.records},
+              nodes{&of.nodes},
+              tolerance{within},
+              flat{within / flat_share},
+              rounding{1e-14 * of.records.magnitude()} {}
+        /// Whether elements may stop at a node of the hierarchy.
+        bool stops(NodeKey key) const {
+            const RealNode* const node = nodes->find(key);
+            return node != nullptr && static_cast<double>(node->stop) <= tolerance;
+        }
+    };
     /// S = (stop <= tolerance) at nodes of the hierarchy, and the lens lets elements stop there.
     class Stops final : public Criterion {
     public:
-        Stops(const RealNodes& nodes, double tolerance, std::shared_ptr<const LensSizes> lens)
-            : nodes_{&nodes}, tolerance_{tolerance}, lens_{std::move(lens)} {}
+        Stops(const Drawn& field, const std::optional<Drawn>& places,
+              std::shared_ptr<const LensSizes> lens)
+            : field_{field}, places_{places}, lens_{std::move(lens)} {}
         NodeMask holds(const NewNodes& nodes) const override;
         bool saturated() const override { return true; }
         bool wants_positions() const override { return lens_ != nullptr; }
-        bool made_for(std::uint64_t epoch) const override { return nodes_->made_for(epoch); }
+        bool made_for(std::uint64_t epoch) const override { return field_.nodes->made_for(epoch); }
 
     private:
-        const RealNodes* nodes_;
-        double tolerance_;
+        Drawn field_;
+        std::optional<Drawn> places_;
         std::shared_ptr<const LensSizes> lens_;
     };
-    /// The nets of the children of the boxes on the way down that were entered last.
     struct OpenTask final : Task {
-        struct Halves {
-            std::uint32_t leaf = VirtualElement::no_leaf;
-            std::uint64_t way = 0;
-            std::vector<double> nets;  // of component 0, one child behind the other
-        };
         std::unique_ptr<Task> base;
         Family family;                         // of a coarse element
         std::size_t coarse = ~std::size_t{0};  // the one asked for last
         CornerKeys key{};                      // of its corners
-        std::vector<Halves> halves;            // by level of the element entered
-        NetRoom net;                           // of the element looked at last, where it is no box
-        std::uint32_t pyramid = VirtualElement::no_leaf;  // the one looked into last
-        PyramidCurvature curvature;                       // of that
-    };
-    /// The coefficients of component 0 on an element below a leaf; below a pyramid on a box around.
-    struct OwnNet {
-        const double* net;
-        int degree;
-        std::array<std::uint8_t, max_corners> number;  // of the corners, among those of the net
-        Factors factors;                               // of the net
-        const PyramidCurvature* curvature = nullptr;   // below a pyramid
+        std::vector<ElementNets> field;        // of component 0
+        std::vector<ElementNets> places;       // of the coordinates, where leaves are curved
+
+        std::vector<ElementNets>& nets_of(const LeafRecords& records) {
+            return records.drawn() == 1 ? field : places;
+        }
     };
     /// What a leaf, or an element below it, looks like at the tolerance.
     struct Looked {
         NodeMask flat = 0;     // new nodes that halve a flat part
         bool all_flat = true;  // parts without a node, too
         NetFacts facts;        // of the element; its range includes that of the records around
+        std::array<double, 3> beta{};  // of each component that is drawn
+        double error = 0;              // of what is drawn in the element
+        double corner_error = 0;       // of positions drawn at the corners
+        bool exceeds = false;          // whether the error is more than is allowed
     };
     using Positions = std::array<Point, max_split_nodes>;
     struct Places;
 
+    static std::optional<Drawn> places_within(const HighOrderData& data,
+                                              const VirtualOptions& options);
+    Point position(NodeKey key) const;
     Positions positions(Task* task, const VirtualElement& e, NodeMask which) const;
+    void put_places(OpenTask& task, const VirtualElement& e, NodeMask which, Positions& x) const;
     static Places& places(Family& family, std::size_t count);
     void set_leaf(VirtualElement& e, const Member& member, ElementState& state) const;
     void set_child(const VirtualElement& father, std::size_t child, const Family& base,
                    VirtualElement& e, ElementState& state) const;
     void describe(OpenTask& task, const VirtualElement& e, const double* u, Family& family,
                   std::size_t member) const;
-    void describe_split(const VirtualElement& e, Member& member) const;
+    void describe_split(const VirtualElement& e, Member& member, InnerBounds& inner) const;
     void describe_leaf(OpenTask& task, const VirtualElement& e, const double* u, Member& member,
                        InnerBounds& inner) const;
     // One leaf and its parts (leaf_parts.cpp).
-    Looked look(const VirtualElement& e, const OwnNet& own) const;
+    Looked look(OpenTask& task, const VirtualElement& e, const Drawn& drawn,
+                std::span<const double> u) const;
+    void look_at_parts(const VirtualElement& e, const Drawn& drawn, std::span<const OwnNet> own,
+                       Looked& looked) const;
+    void look_at_error(OpenTask& task, const VirtualElement& e, const Drawn& drawn,
+                       std::span<const OwnNet> own, std::span<const double> u,
+                       Looked& looked) const;
     /// \param is_fine whether the lens finds the part fine; asked only if there is a lens
     template <class IsFine>
-    bool is_flat(double beta, int level, const IsFine& is_fine) const {
-        return level >= depth_ || (beta <= flat_ && (lens_ == nullptr || is_fine()));
+    bool is_flat(const Drawn& drawn, double beta, int level, const IsFine& is_fine) const {
+        return level >= depth_ || (beta <= drawn.flat && (lens_ == nullptr || is_fine()));
     }
-    double drawn_error(const VirtualElement& e, const OwnNet& own, double beta,
-                       std::span<const double> u) const;
-    double drawn_error_in_pyramid(const VirtualElement& e, const OwnNet& own, double beta,
-                                  std::span<const double> u) const;
-    OwnNet net_of(OpenTask& task, const VirtualElement& e) const;
-    OwnNet net_in_pyramid(OpenTask& task, const VirtualElement& e) const;
-    double own_value(const VirtualElement& e, const OwnNet& own, std::size_t corner) const;
-    const double* box_net_of(OpenTask& task, const VirtualElement& e) const;
-    const double* nets_of_children(OpenTask& task, const VirtualElement& e) const;
-    void leaf_values(OpenTask& task, const VirtualElement& e, std::size_t node, double* out) const;
+    bool hangs_flat(const Drawn& drawn, NodeKey key) const;
+    void leaf_values(OpenTask& task, const VirtualElement& e, const Drawn& drawn, std::size_t node,
+                     double* out) const;
 
     std::shared_ptr<const HighOrderData> data_;
-    const LeafRecords* records_;
-    const RealNodes* nodes_;
+    Drawn field_;
+    std::optional<Drawn> places_;  // where leaves are curved
     std::size_t components_;
-    double tolerance_;
-    double flat_;  // beta of what is flat
     int depth_;
-    double least_beyond_;  // covers rounding
-    bool linear_;          // every leaf is the interpolant of its corners, and fits its neighbours
+    bool linear_;  // every leaf is the interpolant of its corners, and fits its neighbours
     std::shared_ptr<const LensSizes> lens_;  // or null
     Stops criterion_;
 };

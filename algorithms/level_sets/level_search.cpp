@@ -57,11 +57,13 @@ bool LevelSearch<Real>::looks_at_function(const View& view, const Split& split,
     if (view.is_leaf() || functions.affine(component)) return false;
     std::array<Point, max_corners> x;
     walk_->corners(view, nullptr, x.data());
-    const auto [least, greatest] =
-        functions.range(component, std::span<const Point>(x).first(view.corner_count()),
-                        {static_cast<double>(range.lo), static_cast<double>(range.hi)},
-                        static_cast<double>(view.value[component]),
-                        functions.distance_beyond_hull(split.keys, view.interpolated == 0));
+    const auto beyond_hull = static_cast<double>(view.inner_bounds().beyond_hull);
+    const auto [least, greatest] = functions.range(
+        component, std::span<const Point>(x).first(view.corner_count()),
+        {static_cast<double>(range.lo), static_cast<double>(range.hi)},
+        static_cast<double>(view.value[component]),
+        beyond_hull >= 0 ? beyond_hull
+                         : functions.distance_beyond_hull(split.keys, view.interpolated == 0));
     return of_interest(static_cast<Real>(least), static_cast<Real>(greatest), 0, component, caps);
 }
 

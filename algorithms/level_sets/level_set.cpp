@@ -535,7 +535,9 @@ bool LevelSet<dimension, Real>::stops_above_cap(const View& view) {
 template <int dimension, class Real>
 NESTGRID_INLINE void LevelSet<dimension, Real>::end_element(DrawnSurface<dimension>& surface) {
     surface.add_extracted(1);
-    surface.add_limited(at_hand_.cuts.view().inner_bounds().limited ? 1 : 0);
+    const InnerBounds inner = at_hand_.cuts.view().inner_bounds();
+    surface.add_limited(inner.limited ? 1 : 0);
+    surface.raise_position_bound(static_cast<double>(inner.position_error));
     surface.raise_off_level(at_hand_.cuts.off_level());
     const double bound = error_bound(at_hand_.cuts, *search_, at_hand_.bound);
     const View& view = at_hand_.cuts.view();

@@ -62,8 +62,13 @@ Projection told(Projection projection) {
 std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
                                                  const Projection& projection, const Work& work) {
     const bool exactly = projection.least_threshold() == 0 && projection.max_triangles == 0;
-    if (!projection.asks_for_error() || exactly) return nullptr;
-    auto data = prerolls.high_order(work);
+    std::shared_ptr<const HighOrder> data;
+    if (projection.asks_for_error() && !exactly) data = prerolls.high_order(work);
+    if (projection.position_error > 0 && (data == nullptr || data->geometry_degree() == 1)) {
+        throw InvalidInput(
+            "an error of positions is asked for, which is for curved cells that are drawn within "
+            "an error");
+    }
     if (data != nullptr) projection.require_error_alone(data->greatest_degree());
     return data;
 }
@@ -78,7 +83,8 @@ VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projec
                                  double tolerance) {
     return {data,
             {.tolerance = std::min(tolerance, std::numeric_limits<double>::max()),
-             .lens = projection.lens}};
+             .lens = projection.lens,
+             .position_tolerance = projection.position_error}};
 }
 
 TriangleBudget find_tolerance(const HighOrder& data, const Projection& projection,

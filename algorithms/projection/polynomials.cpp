@@ -19,7 +19,7 @@ struct PolynomialsOfField {
 
 namespace {
 
-/// Looks for a leaf of a degree above 1.
+/// Looks for a leaf that is curved, or has a degree above 1.
 template <class Real>
 class DegreeSearch {
 public:
@@ -42,7 +42,10 @@ private:
         return families_[level];
     }
     bool is_below(const Member& member, std::size_t level) {
-        if (member.rule == nullptr) return hierarchy_->degree(task_.get(), member.element) > 1;
+        if (member.rule == nullptr) {
+            return hierarchy_->degree(task_.get(), member.element) > 1 ||
+                   hierarchy_->geometry_degree(task_.get(), member.element) > 1;
+        }
         Family& family = at(level);
         hierarchy_->enter(task_.get(), member.element, *member.rule, 0, nullptr, ~NodeMask{0},
                           family);

@@ -7,7 +7,8 @@
 
 namespace nestgrid::engine {
 
-/// The polynomials of a field, which keep it alive; null where no leaf has a degree above 1.
+/// The polynomials of a field, which keep it alive; null where no leaf is curved or
+/// has a degree above 1.
 ///
 /// \throw InvalidInput, GridError as HighOrder
 std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field);

@@ -44,6 +44,9 @@ void Projection::check() const {
             "triangles are split until colours follow the data: neither with collapses nor within "
             "a number of triangles");
     }
+    if (!(position_error >= 0) || !std::isfinite(position_error)) {
+        throw InvalidInput("the error of positions is not a finite number >= 0");
+    }
     if (keeps_distance && !threshold && !(collapse && max_triangles > 0)) {
         throw InvalidInput("a distance is to be kept, but there is no threshold that says which");
     }

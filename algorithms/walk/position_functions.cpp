@@ -239,6 +239,17 @@ void WidenedHierarchy<Real>::evaluate(Task* task, const Handle& leaf,
 }
 
 template <class Real>
+int WidenedHierarchy<Real>::geometry_degree(Task* task, const Handle& leaf) const {
+    return inner_->geometry_degree(own(task).inner.get(), leaf);
+}
+
+template <class Real>
+void WidenedHierarchy<Real>::map(Task* task, const Handle& leaf, std::span<const Point> reference,
+                                 std::span<Point> out) const {
+    inner_->map(own(task).inner.get(), leaf, reference, out);
+}
+
+template <class Real>
 void WidenedHierarchy<Real>::corners(Task* task, const Handle& element, std::size_t count,
                                      NodeKey* keys, Point* positions, unsigned* boundary) const {
     inner_->corners(own(task).inner.get(), element, count, keys, positions, boundary);

@@ -105,6 +105,9 @@ public:
     int degree(Task* task, const Handle& leaf) const override;
     void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
                   double* out) const override;
+    int geometry_degree(Task* task, const Handle& leaf) const override;
+    void map(Task* task, const Handle& leaf, std::span<const Point> reference,
+             std::span<Point> out) const override;
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         return inner_->hanging_parents(node);
     }

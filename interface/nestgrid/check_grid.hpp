@@ -43,6 +43,7 @@ enum class Law : std::uint8_t {
     hanging_parents,  ///< a node hangs on its own parents: on every leaf that it lies on, its
                       ///< stencil gives the value that the leaf has there
     degree,           ///< evaluate() gives the values at nodes, and polynomials of degree()
+    map,              ///< map() gives the positions of nodes, and polynomials of geometry_degree()
     coarse_ids,       ///< one place, one id; where CheckOptions::one_id_a_place demands it
     presence,         ///< an element is here, in part or elsewhere as its children are; no leaf is
                       ///< in part. Of a grid with this operation no values are looked at

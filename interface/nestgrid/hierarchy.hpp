@@ -58,6 +58,11 @@ struct InnerBounds {
     /// On a leaf: how far U may be from what is drawn of P_S U at its corners, triangles included;
     /// 0 where these say all.
     float error = 0;
+    /// On grids with curved leaves, how far what is drawn of an element may be from where its
+    /// points are; and how far the element and all below it may leave the hull of its corners.
+    /// Negative: the corners, and position_bounds(), say all.
+    float position_error = -1;
+    float beyond_hull = -1;
     bool limited = false;  ///< a leaf that a limit on depth kept from being divided
 };
 
@@ -234,6 +239,13 @@ public:
     virtual void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
                           Real* out) const;
 
+    /// The degree of the coordinates of points in a leaf, where the grid has geometry_degree; else
+    /// 1.
+    virtual int geometry_degree(Task* task, const Handle& leaf) const;
+    /// Where points of the reference element are, where the grid has geometry_degree.
+    virtual void map(Task* task, const Handle& leaf, std::span<const Point> reference,
+                     std::span<Point> out) const;
+
     /// The parents of a node that hangs on an edge, where the grid has hanging_parents.
     virtual std::array<NodeKey, 2> hanging_parents(NodeKey node) const;
 
@@ -271,6 +283,12 @@ int Hierarchy<Real>::degree(Task*, const Handle&) const {
 }
 template <class Real>
 void Hierarchy<Real>::evaluate(Task*, const Handle&, std::span<const Point>, Real*) const {}
+template <class Real>
+int Hierarchy<Real>::geometry_degree(Task*, const Handle&) const {
+    return 1;
+}
+template <class Real>
+void Hierarchy<Real>::map(Task*, const Handle&, std::span<const Point>, std::span<Point>) const {}
 template <class Real>
 std::array<NodeKey, 2> Hierarchy<Real>::hanging_parents(NodeKey node) const {
     return {node, node};

@@ -145,6 +145,14 @@ typedef struct nestgrid_grid {
     /* Optional, where the grid is distributed: which leaves below e this process has. *which: 0
      * for all, 1 for some and the first one, 2 for some others, 3 for none. */
     int (*presence)(const void* self, void* context, const nestgrid_element* e, int* which);
+
+    /* Optional, both or neither; asked of leaves alone. The degree of the polynomials that are the
+     * coordinates of points in a leaf, 1 to 8, and where `count` points of its reference element
+     * are. */
+    int (*geometry_degree)(const void* self, void* context, const nestgrid_element* leaf,
+                           int* degree);
+    int (*map)(const void* self, void* context, const nestgrid_element* leaf, size_t count,
+               const double (*reference)[3], double (*out)[3]);
 } nestgrid_grid;
 
 /** The questions to a field. Values are float or double as value_type says; component c of node n

@@ -45,6 +45,12 @@
 //         row_values()
 //     Point node_position(NodeKey)
 //         random access, with for_each_star_row; splits with the same offsets in key are congruent
+//     int geometry_degree(leaf)
+//         of the polynomials that are the coordinates of points in the leaf, as degree() of a
+//         field; 1: its corners say all
+//     void map(leaf, std::span<const Point> reference, std::span<Point> out)
+//         where points of the reference element are. With geometry_degree(), neither without the
+//         other; asked of leaves only. At a corner it is the position of the node
 //     std::uint64_t epoch()
 //         changes with the grid: tells stale prerolls
 // It may also name constants, from which the sizes of arrays and the lengths of loops follow:
@@ -109,8 +115,9 @@ enum class Feature : unsigned {
     hanging_parents = 1024,
     presence = 2048,
     degree = 4096,
+    geometry_degree = 8192,
 };
-inline constexpr Feature last_feature = Feature::degree;
+inline constexpr Feature last_feature = Feature::geometry_degree;
 /// The greatest degree that a leaf may have.
 inline constexpr int max_degree = 8;
 

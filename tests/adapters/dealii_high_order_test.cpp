@@ -10,12 +10,14 @@
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/fe_wedge_p.h>
 #include <deal.II/fe/mapping.h>
+#include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/hp/fe_collection.h>
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/vector.h>
 
 #include <nestgrid/adapters/dealii.hpp>
+#include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
 #include <nestgrid/algorithms/polynomial_values.hpp>
 #include <nestgrid/check_grid.hpp>
@@ -255,6 +257,39 @@ TEST(DealiiHighOrder, ComponentsOfSystemsAreToldApart) {
     const auto result = isosurface<3>(fine, 0.3, under(fine.criterion(), fine.bounds()));
     expect_closed(result.surface);
     expect_colours(result.surface, [](const Point& x) { return x[0]; });
+}
+
+/// The boundary of a ball in space under a MappingQ is a sphere, hanging faces and all.
+TEST(DealiiHighOrder, BallsUnderAMappingAreRound) {
+    const Problem<3> problem(dealii::FE_Q<3>(2), Domain::ball);
+    const dealii::MappingQ<3> mapping(3);
+    const DealiiGrid<3> grid(problem.triangulation, &mapping);
+    const DealiiField field(grid, problem.dofs, problem.values);
+    const auto violation = check_grid(grid, field);
+    EXPECT_FALSE(violation.has_value()) << (violation ? violation->sentence : "");
+    const HighOrder data(grid, field);
+    EXPECT_EQ(data.geometry_degree(), 3);
+    EXPECT_GT(data.position_jump(), 0) << "maps of cells do not meet in hanging faces";
+    EXPECT_LE(data.position_jump(), 0.02);
+    for (const double tolerance : {0.03, 0.01}) {
+        const VirtualRefinement fine(
+            data, {.tolerance = 100, .depth = 6, .position_tolerance = tolerance});
+        const auto sphere =
+            boundary_surface(fine, under(fine.criterion(), fine.bounds()), {.verify = true});
+        expect_closed(sphere.surface, true);
+        double off = 0;
+        for (const auto& t : sphere.surface.simplices) {
+            Point middle{0, 0, 0};
+            for (const auto v : t) middle = middle + (1.0 / 3) * sphere.surface.vertices[v];
+            off = std::max(off, std::abs(norm(middle) - 1));
+        }
+        EXPECT_LE(off, tolerance + data.position_jump());
+    }
+    const VirtualRefinement fine(data, {.tolerance = 0.1, .depth = 5, .position_tolerance = 0.03});
+    const auto surface =
+        isosurface<3>(fine, 0.2, under(fine.criterion(), fine.bounds()), {.verify = true});
+    EXPECT_GT(surface.surface.simplices.size(), 1000U);
+    expect_closed(surface.surface);
 }
 
 }  // namespace

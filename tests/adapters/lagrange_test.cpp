@@ -266,6 +266,38 @@ TEST(Lagrange, NodesApartFromStraightCellsAreTold) {
     EXPECT_NEAR(bent.curved().distance, 0.01, 1e-12);
 }
 
+/// A plane in a bent box is bent: closed, and where the cells put it.
+TEST(Lagrange, CurvedCellsAreDrawnWhereTheyAre) {
+    for (const bool own_points : {false, true}) {
+        Mesh mesh = lagrange_box(3, 2, 3, {.own_points = own_points});
+        const std::vector<double> heights = mesh.sampled([](const Point& x) { return x[2]; });
+        for (std::size_t i = 0; i < mesh.coordinates.size(); i += 3) {
+            mesh.coordinates[i + 2] += 0.3 * mesh.coordinates[i] * mesh.coordinates[i];
+        }
+        const LagrangeGrid<3> grid(mesh.arrays());
+        EXPECT_EQ(grid.curved().count, grid.coarse_count());
+        const LagrangeField<3> field(grid, heights);
+        const auto violation = check_grid(grid, field);
+        EXPECT_FALSE(violation.has_value()) << (violation ? violation->sentence : "");
+        const HighOrder data(grid, field);
+        EXPECT_EQ(data.geometry_degree(), 3);
+        EXPECT_LE(data.position_jump(), 1e-12);
+        const VirtualRefinement fine(data, {.tolerance = 1, .position_tolerance = 1e-3});
+        const auto plane = isosurface<3>(fine, 0.4 * heights.back(),
+                                         under(fine.criterion(), fine.bounds()), {.verify = true});
+        expect_closed(plane.surface);
+        EXPECT_GT(plane.surface.simplices.size(), 100U);
+        double off = 0;
+        for (const auto& t : plane.surface.simplices) {
+            Point x{0, 0, 0};
+            for (const auto v : t) x = x + (1.0 / 3) * plane.surface.vertices[v];
+            off = std::max(off, std::abs(x[2] - 0.3 * x[0] * x[0] - 0.4 * heights.back()));
+        }
+        EXPECT_GT(off, 0);
+        EXPECT_LE(off, 2e-3);
+    }
+}
+
 TEST(Lagrange, ValuesOfLinearCellsAreMeansWhereCellsDisagree) {
     const Mesh mesh = lagrange_box(3, 2, 1, {.own_points = true});
     const LagrangeGrid<3> grid(mesh.arrays());

@@ -188,6 +188,8 @@ public:
         return nestgrid::dyadic_rule(dim == 3 ? nestgrid::Shape::hexahedron
                                               : nestgrid::Shape::quadrilateral);
     }
+    static nestgrid::Shape shape(const Element&) { return rule().parent; }
+    Point position(const Element& e, const Point& x) const { return position(cells_[e.cell], x); }
     /// The function that was interpolated, at a point of the reference element.
     double f(const Element& e, const Point& x) const { return f_(position(cells_[e.cell], x)); }
     const TensorPolynomial<dim>& polynomial(const Element& e) const { return cells_[e.cell].u; }

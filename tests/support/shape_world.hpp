@@ -199,6 +199,7 @@ public:
     double f(const Element& e, const Point& reference) const {
         return f_(position(cells_[e.cell], reference));
     }
+    Point position(const Element& e, const Point& x) const { return position(cells_[e.cell], x); }
     Shape shape(const Element& e) const { return cells_[e.cell].shape; }
     const LatticePolynomial& polynomial(const Element& e) const { return cells_[e.cell].u; }
     /// The data at a point: those of the leaf that the point lies in, or nothing outside.

@@ -163,8 +163,7 @@ std::string note_on(const LagrangeGrid<dim>& grid) {
     const nestgrid::CurvedCells& curved = grid.curved();
     if (curved.count == 0) return "";
     return with_number(std::to_string(curved.count) +
-                           " cells are curved, by up to % in units of length: they are drawn "
-                           "straight between their corners",
+                           " cells are curved, by up to % in units of length",
                        curved.distance);
 }
 
@@ -206,7 +205,6 @@ InputField field_in(std::shared_ptr<const Parcel> parcel, const fs::path& path) 
     const auto kept = std::make_shared<const KeptCells<dim>>(
         KeptCells<dim>{std::move(parcel), std::move(read), numbers});
     InputField field;
-    field.note = note_on(kept->grid);
     set_frames(field, kept);
     field.name.assign(text.begin(), text.end());
     field.nodes = kept->grid.point_count();

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -81,13 +80,6 @@ class Cells(Field):
         )
         self._cells = _nestgrid.cells(*self._arrays)
         self._set(self._cells, name, unit)
-        if self._cells.curved_cells:
-            warnings.warn(
-                f"{self._cells.curved_cells} cells are curved, by up to "
-                f"{self._cells.curved_distance:.3g} in units of length: they are drawn straight "
-                "between their corners",
-                stacklevel=3,
-            )
 
     @property
     def degree(self) -> int:

@@ -117,7 +117,7 @@ class CellSource : public Source {
 public:
     using Source::Source;
     virtual int degree() const = 0;                ///< the greatest of a cell
-    virtual std::size_t curved_cells() const = 0;  ///< which are drawn straight
+    virtual std::size_t curved_cells() const = 0;  ///< by CurvedCells
     virtual double curved_distance() const = 0;    ///< as CurvedCells
 };
 /// \param values one for each point, copied

@@ -5,8 +5,9 @@
 //     const HighOrder data(grid, field);                            once per solution
 //     const VirtualRefinement fine(data, {.tolerance = 1e-3});
 //     isosurface<3>(fine, 0.3, fine.criterion(), fine.bounds());
-// For all shapes, straight and divided by red_rule(); the field has degree() and
-// evaluate() (optional.hpp). The tolerance is one of component 0. docs/high_order.md.
+// For all shapes, divided by red_rule(); the field has degree() and evaluate(), a grid with curved
+// leaves geometry_degree() and map() (optional.hpp). The tolerance is one of component 0, beside
+// one of positions. docs/high_order.md.
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
@@ -31,8 +32,12 @@ public:
         : HighOrder(std::make_shared<const detail::ErasedHierarchy<Grid, Field>>(grid, field)) {}
 
     int greatest_degree() const;
+    /// The greatest degree of positions; 1: all leaves are straight.
+    int geometry_degree() const;
     /// How far leaves are apart on edges and faces that they share: rounding in a continuous field.
     double jump() const;
+    /// The same of positions, in units of length.
+    double position_jump() const;
     /// The tolerance at which the most curved leaf is flat at the depth limit, if it is halved as
     /// often as VirtualOptions::depth is by default. Below it more and more elements meet the
     /// limit; budgets of triangles end there.
@@ -58,6 +63,9 @@ struct VirtualOptions {
     /// Elements stop only where they are as small as the lens asks, too, or at the depth limit. Its
     /// `finest` is positive.
     std::optional<LensRequest> lens{};
+    /// How far points of curved leaves may be from where they are drawn, in units of length; 0: the
+    /// same share of the diameter of the domain as the tolerance is of the range of the data.
+    double position_tolerance = 0;
 };
 
 /// Leaves halved until what is drawn is within the tolerance, or at the depth limit

@@ -66,6 +66,10 @@ struct Projection {
     /// P_S U within this, in the units of the data (refine_colours.hpp); 0 splits none. Beside
     /// neither collapses nor a number of triangles.
     double colour_tolerance = 0;
+    /// How far points of curved cells may be from where they are drawn, in units of length, beside
+    /// an error; 0: the same share of the diameter of the domain as the error is of the range of
+    /// the data (high_order.hpp).
+    double position_error = 0;
     /// A criterion in the place of the threshold, the indicator and all that belongs to them, with
     /// bounds for the search; both are set by under(). No preroll is made.
     std::shared_ptr<const Criterion> criterion{};

@@ -253,6 +253,24 @@ public:
         }
     }
 
+    int geometry_degree(Task* task, const Handle& leaf) const override {
+        if constexpr (may_offer<Grid>(Feature::geometry_degree)) {
+            return with(task, [&](auto& context) {
+                const auto& e = element_of<Element>(leaf);
+                return static_cast<int>(call_geometry_degree(*grid_, context, e));
+            });
+        }
+        return 1;
+    }
+    void map(Task* task, const Handle& leaf, std::span<const Point> reference,
+             std::span<Point> out) const override {
+        if constexpr (may_offer<Grid>(Feature::geometry_degree)) {
+            with(task, [&](auto& context) {
+                call_map(*grid_, context, element_of<Element>(leaf), reference, out);
+            });
+        }
+    }
+
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         if constexpr (may_offer<Grid>(Feature::hanging_parents)) {
             return grid_->hanging_parents(node);

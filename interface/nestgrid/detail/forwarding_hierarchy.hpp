@@ -48,6 +48,13 @@ public:
                   Real* out) const override {
         inner_->evaluate(task, leaf, reference, out);
     }
+    int geometry_degree(Task* task, const Handle& leaf) const override {
+        return inner_->geometry_degree(task, leaf);
+    }
+    void map(Task* task, const Handle& leaf, std::span<const Point> reference,
+             std::span<Point> out) const override {
+        inner_->map(task, leaf, reference, out);
+    }
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         return inner_->hanging_parents(node);
     }

@@ -85,6 +85,12 @@ struct NoContextArgument {
               NodeMask, C, E)                                                                      \
     OPERATION(of_grid, Feature::boundary_faces, boundary_faces,                                    \
               "unsigned boundary_faces(const Element&) const", unsigned, C, E)                     \
+    OPERATION(of_grid, Feature::geometry_degree, geometry_degree,                                  \
+              "int geometry_degree(const Element&) const", int, C, E)                              \
+    OPERATION(of_grid, Feature::geometry_degree, map,                                              \
+              "void map(const Element&, std::span<const Point> reference, std::span<Point> out) "  \
+              "const",                                                                             \
+              void, C, E, Places, Points)                                                          \
     OPERATION(of_grid, no_feature, for_each_star_row, "void for_each_star_row(f) const", void,     \
               NoContextArgument, void (*)(const StarRow&))                                         \
     OPERATION(of_grid | of_field, no_feature, knows_stars, "bool knows_stars() const", bool,       \
@@ -316,6 +322,10 @@ consteval bool require_fitting_operations() {
                       detail::offers_new_keys<Grid, C, E, std::span<NodeKey>>,
                   "A nested grid with keys of its own must define both 'corner_keys' and "
                   "'new_keys'; the library would ignore one alone.");
+    static_assert(detail::offers_geometry_degree<Grid, C, E> ==
+                      detail::offers_map<Grid, C, E, std::span<const Point>, std::span<Point>>,
+                  "A nested grid with curved leaves must define both 'geometry_degree' and 'map'; "
+                  "the library would ignore one alone.");
     static_assert(detail::offers_degree<Field, C, E> ==
                       detail::offers_evaluate<Field, C, E, std::span<const Point>,
                                               std::span<typename Field::value_type>>,

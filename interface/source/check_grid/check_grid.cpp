@@ -19,7 +19,7 @@ constexpr auto laws = {
     detail::own_corner_law,    detail::repetition_law,     detail::rule_law,
     detail::hidden_law,        detail::presence_law,       detail::stencil_law,
     detail::key_law,           detail::value_law,          detail::hanging_law,
-    detail::degree_law,
+    detail::degree_law,        detail::curved_law,
 };
 
 std::optional<GridViolation> find_violation(const Hierarchy<double>& hierarchy, double epsilon,

@@ -37,5 +37,7 @@ GridLawPointer value_law(Inspection& inspection);
 GridLawPointer hanging_law(Inspection& inspection);
 /// Requires that the hanging law stands before it.
 GridLawPointer degree_law(Inspection& inspection);
+/// The same.
+GridLawPointer curved_law(Inspection& inspection);
 
 }  // namespace nestgrid::detail

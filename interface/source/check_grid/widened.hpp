@@ -60,6 +60,13 @@ public:
         from_->evaluate(task, leaf, reference, values.data());
         std::copy(values.begin(), values.end(), out);
     }
+    int geometry_degree(Task* task, const Handle& leaf) const override {
+        return from_->geometry_degree(task, leaf);
+    }
+    void map(Task* task, const Handle& leaf, std::span<const Point> reference,
+             std::span<Point> out) const override {
+        from_->map(task, leaf, reference, out);
+    }
 
 private:
     /// Lets ask() write all components at some nodes, and converts them. There is room for as many

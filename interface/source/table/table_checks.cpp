@@ -129,6 +129,9 @@ nestgrid_grid checked_table(const nestgrid_grid& given) {
     require(table.coarse != nullptr, "coarse");
     require(table.split != nullptr, "split");
     require(table.children != nullptr, "children");
+    if ((table.geometry_degree == nullptr) != (table.map == nullptr)) {
+        throw InvalidInput("the table of the grid has one of 'geometry_degree' and 'map' alone");
+    }
     return table;
 }
 

@@ -118,6 +118,8 @@ bool TableGrid::offers(Feature feature) const {
             return table_.outside != nullptr;
         case Feature::boundary_faces:
             return table_.boundary_faces != nullptr;
+        case Feature::geometry_degree:
+            return table_.geometry_degree != nullptr;
         case Feature::hanging_parents:
             return keys && table_.hanging_parents != nullptr;
         case Feature::presence:

@@ -139,6 +139,15 @@ public:
     unsigned boundary_faces(const Element& e, TableContext& c) const {
         return ask<unsigned>(table_.boundary_faces, "boundary_faces", e, c);
     }
+    int geometry_degree(const Element& leaf, TableContext& c) const {
+        return ask<int>(table_.geometry_degree, "geometry_degree", leaf, c);
+    }
+    void map(const Element& leaf, std::span<const Point> reference, std::span<Point> out,
+             TableContext& c) const {
+        check(table_.map(table_.self, c.state(), &leaf, reference.size(),
+                         reinterpret_cast<ConstTableRows>(reference.data()), as_rows(out.data())),
+              "map", &c);
+    }
     std::uint64_t epoch() const {
         std::uint64_t epoch = 0;
         if (table_.epoch != nullptr) check(table_.epoch(table_.self, &epoch), "epoch", nullptr);

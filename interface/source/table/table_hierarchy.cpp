@@ -167,6 +167,16 @@ public:
                                 context_of(task));
     }
 
+    int geometry_degree(Task* task, const Handle& leaf) const override {
+        if (!this->offers(Feature::geometry_degree)) return 1;
+        return grid_.geometry_degree(of(leaf), context_of(task));
+    }
+    void map(Task* task, const Handle& leaf, std::span<const Point> reference,
+             std::span<Point> out) const override {
+        if (!this->offers(Feature::geometry_degree)) return;
+        grid_.map(of(leaf), reference, out, context_of(task));
+    }
+
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
         if (!this->offers(Feature::hanging_parents)) return {node, node};
         return grid_.hanging_parents(node);

@@ -233,6 +233,12 @@ private:
         if constexpr (has(Feature::presence)) {
             if (offered(Feature::presence)) table.presence = presence;
         }
+        if constexpr (has(Feature::geometry_degree)) {
+            if (offered(Feature::geometry_degree)) {
+                table.geometry_degree = geometry_degree;
+                table.map = map;
+            }
+        }
         if constexpr (has(Feature::outside)) {
             if (offered(Feature::outside)) table.outside = outside;
         }
@@ -320,6 +326,24 @@ private:
             *answer = static_cast<int>(Cross::with(context, [&](auto& ctx) {
                 return nestgrid::detail::call_presence(grid(self), ctx, Cross::load(e));
             }));
+        });
+    }
+    static int geometry_degree(const void* self, void* context, E e, int* degree) {
+        return guarded([&] {
+            *degree = Cross::with(context, [&](auto& ctx) {
+                return nestgrid::detail::call_geometry_degree(grid(self), ctx, Cross::load(e));
+            });
+        });
+    }
+    static int map(const void* self, void* context, E e, std::size_t count,
+                   const double (*reference)[3], Rows out) {
+        return guarded([&] {
+            Cross::with(context, [&](auto& ctx) {
+                nestgrid::detail::call_map(
+                    grid(self), ctx, Cross::load(e),
+                    std::span(reinterpret_cast<const nestgrid::Point*>(reference), count),
+                    as_points(out, count));
+            });
         });
     }
     static int outside(const void* self, void* context, E e, std::uint64_t* nodes) {

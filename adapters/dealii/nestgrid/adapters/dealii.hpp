@@ -21,7 +21,11 @@
 #include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe.h>
+#include <deal.II/fe/fe_nothing.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping.h>
+#include <deal.II/fe/mapping_fe.h>
+#include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/tria.h>
 
 #include <nestgrid/detail/made_for.hpp>
@@ -48,7 +52,9 @@ public:
     static constexpr int max_new_nodes = dim == 1 ? 1 : dim == 2 ? 5 : 19;
     static constexpr int max_children = 1 << dim;
 
-    /// \param mapping gives the positions of vertices; null: where the triangulation has them
+    /// \param mapping gives the positions of vertices, and those inside cells if it is a MappingQ
+    /// or
+    ///        a MappingFE; null: where the triangulation has them
     ///
     /// \throw InvalidInput for a triangulation that is refined in one direction only, or over
     ///        several processes fully distributed or with a mapping, on all processes alike
@@ -62,6 +68,7 @@ public:
     bool offers(Feature feature) const {
         const bool needs_whole = feature == Feature::own_keys || feature == Feature::dense_keys ||
                                  feature == Feature::constrained;
+        if (feature == Feature::geometry_degree) return mapping_degree_ > 1;
         return feature == Feature::presence ? parted_ : !parted_ || !needs_whole;
     }
 
@@ -96,6 +103,8 @@ public:
         return hanging;
     }
     void new_positions(const Element& e, NodeMask which, std::span<Point> out) const;
+    int geometry_degree(const Element&) const { return mapping_degree_; }
+    void map(const Element& leaf, std::span<const Point> reference, std::span<Point> out) const;
     Presence presence(const Element& e) const {
         return presence_[static_cast<std::size_t>(e.level)][static_cast<std::size_t>(e.index)];
     }
@@ -160,6 +169,7 @@ private:
 
     const Triangulation* triangulation_;
     const dealii::Mapping<dim, spacedim>* mapping_;
+    int mapping_degree_ = 1;
     const Rule* halving_ = nullptr;
     bool all_cubes_ = false;
     RuleTable simplex_rules_;

@@ -27,6 +27,11 @@ DealiiGrid<dim, spacedim>::DealiiGrid(const Triangulation& triangulation,
             "a mapping gives no positions of cells of other processes: over several processes the "
             "vertices of the triangulation must be where they belong");
     }
+    if (const auto* q = dynamic_cast<const dealii::MappingQ<dim, spacedim>*>(mapping)) {
+        mapping_degree_ = static_cast<int>(q->get_degree());
+    } else if (const auto* fe = dynamic_cast<const dealii::MappingFE<dim, spacedim>*>(mapping)) {
+        mapping_degree_ = static_cast<int>(fe->get_degree());
+    }
     halving_ = &dyadic_rule(dim == 1   ? Shape::segment
                             : dim == 2 ? Shape::quadrilateral
                                        : Shape::hexahedron);
@@ -100,6 +105,21 @@ Point DealiiGrid<dim, spacedim>::position(const Cell& c, unsigned corner) const 
         x = mapping_->get_vertices(leaf)[corner];
     }
     return point(x);
+}
+
+template <int dim, int spacedim>
+void DealiiGrid<dim, spacedim>::map(const Element& leaf, std::span<const Point> reference,
+                                    std::span<Point> out) const {
+    std::vector<dealii::Point<dim>> points(reference.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        for (unsigned d = 0; d < dim; ++d) points[i][d] = reference[i][d];
+    }
+    const Cell c = cell(leaf);
+    const dealii::FE_Nothing<dim, spacedim> nothing(c->reference_cell());
+    dealii::FEValues<dim, spacedim> at(*mapping_, nothing, dealii::Quadrature<dim>(points),
+                                       dealii::update_quadrature_points);
+    at.reinit(c);
+    for (unsigned i = 0; i < points.size(); ++i) out[i] = point(at.quadrature_point(i));
 }
 
 /// How the children of a simplex lie in it: every new vertex is the middle of an edge.

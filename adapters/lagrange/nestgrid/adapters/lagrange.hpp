@@ -9,21 +9,23 @@
 //     const HighOrder data(grid, field);                       (high_order.hpp)
 //
 // Cells may share points or have their own: corners at one place are one node, up to the rounding
-// of single precision. So the two sides of a slit are one. Cells are straight: nodes that lie
-// elsewhere than between the corners are looked at, and told by curved(). They move nothing.
+// of single precision. So the two sides of a slit are one. Cells whose nodes lie elsewhere than
+// between the corners are curved: their points are where the same polynomials put them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <nestgrid/adapters/lagrange_faces.hpp>
 #include <nestgrid/adapters/lagrange_nodes.hpp>
+#include <nestgrid/adapters/lagrange_polynomials.hpp>
 #include <nestgrid/detail/geometry.hpp>
 #include <nestgrid/grid.hpp>
 
 namespace nestgrid {
 
-/// Cells that are not the images of their corners.
+/// Cells that their corners alone do not place.
 struct CurvedCells {
     std::size_t count = 0;
     double distance = 0;  ///< the greatest of a node from where the corners put it
@@ -51,6 +53,12 @@ public:
     const Rule* split(Element) const { return nullptr; }
     void children(Element, std::span<Element> out) const { std::ranges::fill(out, 0U); }
     bool conforming() const { return true; }
+    /// Curved leaves are told where there are any.
+    bool offers(Feature feature) const {
+        return feature != Feature::geometry_degree || curved_.count > 0;
+    }
+    int geometry_degree(Element cell) const { return is_curved_[cell] ? kind(cell).degree : 1; }
+    void map(Element cell, std::span<const Point> reference, std::span<Point> out) const;
 
     std::size_t vertex_count() const { return mesh_.nodes.size(); }
     std::size_t point_count() const { return point_count_; }
@@ -67,8 +75,9 @@ public:
 private:
     void copy(const CellArrays& cells);
     void merge_corners(const CellArrays& cells);
-    void look_at_places(const CellArrays& cells, Element cell);
+    bool look_at_places(const CellArrays& cells, Element cell);
     bool is_mirrored(Element cell) const;
+    std::vector<Point> lattice_places(Element cell) const;
 
     CellKinds kinds_;
     std::vector<std::uint16_t> kind_;  // of each cell
@@ -76,6 +85,8 @@ private:
     std::vector<std::size_t> first_{0};
     CoarseGrid mesh_;
     std::vector<bool> mirrored_;
+    std::vector<bool> is_curved_;
+    std::vector<Point> place_;  // of the points, where cells are curved
     std::size_t point_count_ = 0;
     int greatest_degree_ = 1;
     CurvedCells curved_;
@@ -152,63 +163,9 @@ inline void require_point_values(std::span<const double> values, std::size_t poi
 
 namespace detail {
 
-/// The Lagrange polynomials of a degree at equispaced nodes, at a place.
-inline std::array<double, max_degree + 1> lagrange_basis(int degree, double x) {
-    std::array<double, max_degree + 1> basis{};
-    for (int i = 0; i <= degree; ++i) {
-        double product = 1;
-        for (int m = 0; m <= degree; ++m) {
-            if (m != i) product *= (degree * x - m) / (i - m);
-        }
-        basis[static_cast<std::size_t>(i)] = product;
-    }
-    return basis;
-}
-
-/// The factors of Lagrange polynomials on a simplex, for one barycentric coordinate: the product of
-/// (p x - m) / (m + 1) over all m below i.
-inline std::array<double, max_degree + 1> simplex_factors(int degree, double x) {
-    std::array<double, max_degree + 1> factors{1};
-    for (int i = 0; i < degree; ++i) {
-        const auto n = static_cast<std::size_t>(i);
-        factors[n + 1] = factors[n] * (degree * x - i) / (i + 1);
-    }
-    return factors;
-}
-
-/// The polynomial of a cell with values at its lattice.
-/// \param node called with the number of a node, i first
-template <class Value, class Node>
-Value lattice_polynomial(Shape shape, int degree, const Point& x, const Node& node) {
-    if (shape == Shape::pyramid) {
-        const double width = 1 - x[2];
-        const Point in_box = width > 0 ? Point{x[0] / width, x[1] / width, x[2]} : Point{0, 0, 1};
-        return lattice_polynomial<Value>(Shape::hexahedron, degree, in_box, node);
-    }
-    const bool box = is_box(shape);
-    const bool plane = topology(shape).dimension == 2;
-    const bool tetrahedron = shape == Shape::tetrahedron;
-    const auto factors = [&](bool simplex, double at) {
-        return simplex ? simplex_factors(degree, at) : lagrange_basis(degree, at);
-    };
-    const auto in_x = factors(!box, x[0]);
-    const auto in_y = factors(!box, x[1]);
-    auto in_z = factors(tetrahedron, x[2]);
-    if (plane) in_z = {1};
-    const auto rest = factors(true, 1 - x[0] - x[1] - (tetrahedron ? x[2] : 0));
-    const auto p = static_cast<std::size_t>(degree);
-    Value sum{};
-    for (std::size_t k = 0, number = 0; k <= (plane ? 0 : p); ++k) {
-        const std::size_t most = tetrahedron ? p - k : p;
-        for (std::size_t j = 0; j <= most; ++j) {
-            const double outer = in_y[j] * in_z[k];
-            for (std::size_t i = 0; i <= (box ? p : most - j); ++i) {
-                const double last = box ? 1 : rest[most - j - i];
-                sum = sum + in_x[i] * outer * last * node(number++);
-            }
-        }
-    }
-    return sum;
+inline Point place_of(const CellArrays& cells, std::uint32_t point) {
+    const std::span<const double> x = cells.coordinates.subspan(std::size_t{3} * point, 3);
+    return {x[0], x[1], x[2]};
 }
 
 }  // namespace detail
@@ -220,7 +177,10 @@ LagrangeGrid<dim>::LagrangeGrid(const CellArrays& cells) : point_count_{cells.po
     merge_corners(cells);
     for (Element cell = 0; cell < kind_.size(); ++cell) {
         mirrored_.push_back(is_mirrored(cell));
-        if (kind(cell).degree > 1) look_at_places(cells, cell);
+        is_curved_.push_back(kind(cell).degree > 1 && look_at_places(cells, cell));
+    }
+    for (std::size_t i = 0; curved_.count > 0 && i < point_count_; ++i) {
+        place_.push_back(detail::place_of(cells, static_cast<std::uint32_t>(i)));
     }
     detail::HangingFaces(mesh_, 2 * rounding_).check();
 }
@@ -255,15 +215,6 @@ void LagrangeGrid<dim>::copy(const CellArrays& cells) {
         first_.push_back(points_.size());
     }
 }
-
-namespace detail {
-
-inline Point place_of(const CellArrays& cells, std::uint32_t point) {
-    const std::span<const double> x = cells.coordinates.subspan(std::size_t{3} * point, 3);
-    return {x[0], x[1], x[2]};
-}
-
-}  // namespace detail
 
 /// Makes the mesh of corners. Nodes are as near as single precision rounds, and a hundredth of the
 /// shortest edge at most.
@@ -313,9 +264,9 @@ bool LagrangeGrid<dim>::is_mirrored(Element cell) const {
     return (dim == 3 || (across[0] == 0 && across[1] == 0)) && across[2] < 0;
 }
 
-/// Whether the nodes of a cell lie where its corners put them.
+/// Whether the nodes of a cell lie elsewhere than its corners put them.
 template <int dim>
-void LagrangeGrid<dim>::look_at_places(const CellArrays& cells, Element cell) {
+bool LagrangeGrid<dim>::look_at_places(const CellArrays& cells, Element cell) {
     const CellKind& kind = this->kind(cell);
     const auto corners = mesh_.positions(cell);
     double off = 0;
@@ -333,9 +284,47 @@ void LagrangeGrid<dim>::look_at_places(const CellArrays& cells, Element cell) {
             });
         off = std::max(off, norm(x - straight));
     }
-    if (off <= 4 * rounding_) return;
+    if (off <= 4 * rounding_) return false;
     ++curved_.count;
     curved_.distance = std::max(curved_.distance, off);
+    return true;
+}
+
+/// Places of the lattice of a cell. Corners are those of the nodes.
+template <int dim>
+std::vector<Point> LagrangeGrid<dim>::lattice_places(Element cell) const {
+    const CellKind& kind = this->kind(cell);
+    const auto corners = mesh_.positions(cell);
+    const auto end = kind.corner.begin() + topology(kind.shape).corners;
+    std::vector<Point> places;
+    for (const CellNode& node : kind.nodes) {
+        Point x{0, 0, 0};
+        for (const CellNode::Part& part : node.parts) {
+            x = x + part.weight * place_[points(cell)[part.point]];
+        }
+        const auto corner = std::find(kind.corner.begin(), end, node.parts[0].point);
+        if (node.parts.size() == 1 && corner != end) {
+            x = corners[static_cast<std::size_t>(corner - kind.corner.begin())];
+        }
+        places.push_back(x);
+    }
+    return places;
+}
+
+template <int dim>
+void LagrangeGrid<dim>::map(Element cell, std::span<const Point> reference,
+                            std::span<Point> out) const {
+    const CellKind& kind = this->kind(cell);
+    const auto corners = mesh_.positions(cell);
+    const std::vector<Point> lattice =
+        is_curved_[cell] ? lattice_places(cell) : std::vector<Point>();
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i] = detail::lattice_polynomial<Point>(
+            kind.shape, is_curved_[cell] ? kind.degree : 1, reference[i], [&](std::size_t n) {
+                if (is_curved_[cell]) return lattice[n];
+                return corners[std::min(n, topology(kind.shape).corners - std::size_t{1})];
+            });
+    }
 }
 
 template <int dim>
