@@ -17,33 +17,55 @@ Gradients own_gradients(const Walk<Real>& walk, const ElementView<Real>& view) {
     return g;
 }
 
+/// The gradients of the field at the corners of an element and of one of its ancestors, mostly its
+/// father, asked for once: all interpolated corners have the same fathers.
 template <class Real>
-Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, const Rule& rule,
+class OwnGradients {
+public:
+    OwnGradients(const Walk<Real>& walk, const ElementView<Real>& element)
+        : walk_{walk}, element_{element} {}
+
+    const Point& at(const ElementView<Real>& view, std::size_t corner) {
+        const std::size_t i = &view == &element_ ? 0 : 1;
+        if (asked_[i] != &view) gradients_[i] = own_gradients(walk_, view);
+        asked_[i] = &view;
+        return gradients_[i][corner];
+    }
+
+private:
+    const Walk<Real>& walk_;
+    const ElementView<Real>& element_;
+    std::array<const ElementView<Real>*, 2> asked_{};
+    std::array<Gradients, 2> gradients_;
+};
+
+template <class Real>
+Point node_gradient(OwnGradients<Real>& own, const ElementView<Real>& father, const Rule& rule,
                     std::size_t node);
 
 /// The projected gradient at a corner: a vector-valued function, projected with the same S as the
 /// values (paper, section 8).
 template <class Real>
-Point projected_gradient(const Walk<Real>& walk, const ElementView<Real>& view,
+Point projected_gradient(OwnGradients<Real>& own, const ElementView<Real>& view,
                          std::size_t corner) {
     if ((view.interpolated >> corner & 1U) != 0 && view.father != nullptr) {
         const Child& child = view.made_by->children[view.child];
-        return node_gradient(walk, *view.father, *view.made_by, child.corner[corner]);
+        return node_gradient(own, *view.father, *view.made_by, child.corner[corner]);
     }
-    return own_gradients(walk, view)[corner];
+    return own.at(view, corner);
 }
 
 /// The projected gradient at a corner or new node of a split that interpolates it.
 template <class Real>
-Point node_gradient(const Walk<Real>& walk, const ElementView<Real>& father, const Rule& rule,
+Point node_gradient(OwnGradients<Real>& own, const ElementView<Real>& father, const Rule& rule,
                     std::size_t node) {
     const std::size_t corners = father.corner_count();
-    if (node < corners) return projected_gradient(walk, father, node);
+    if (node < corners) return projected_gradient(own, father, node);
     const Stencil& stencil = rule.new_nodes[node - corners];
     Gradients parent;
     Stencil local = stencil;
     for (std::size_t i = 0; i < stencil.count; ++i) {
-        parent[i] = node_gradient(walk, father, rule, stencil.parent[i]);
+        parent[i] = node_gradient(own, father, rule, stencil.parent[i]);
         local.parent[i] = static_cast<std::uint8_t>(i);
     }
     return detail::interpolate(local, parent.data());
@@ -78,8 +100,7 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
     const std::size_t corners = view.corner_count();
     const std::size_t components = element.walk().components();
     std::array<CornerGradient, max_corners> drawn;
-    Gradients exact;  // fetched at the first corner that needs one
-    bool asked = false;
+    OwnGradients<Real> own(element.walk(), view);
     std::array<double, max_corners> value;
     if (!own_) {
         for (std::size_t i = 0; i < corners; ++i) value[i] = view.value[i * components];
@@ -92,12 +113,7 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
         if (!own_) {
             add(slot, drawn[i]);
         } else if (!sums_.known(slot)) {
-            const bool interpolated = (view.interpolated >> i & 1U) != 0;
-            if (!interpolated && !asked) {
-                exact = own_gradients(element.walk(), view);
-                asked = true;
-            }
-            add(slot, {interpolated ? projected_gradient(element.walk(), view, i) : exact[i], 1});
+            add(slot, {projected_gradient(own, view, i), 1});
         }
     }
 }
@@ -126,7 +142,8 @@ void Normals<Real>::add(Slot slot, const CornerGradient& gradient) {
 template <class Real>
 void Normals<Real>::append(const Normals& other) {
     std::vector<Slot> slot;
-    for (const NodeKey node : other.sums_.nodes()) slot.push_back(sums_.slot(node));
+    slot.reserve(other.sums_.count());
+    for (Slot i = 0; i < other.sums_.count(); ++i) slot.push_back(sums_.slot(other.sums_.node(i)));
     for (const auto& [at, gradient] : other.log_) add(slot[at], gradient);
     of_shared_.append(other.of_shared_);
 }

@@ -8,12 +8,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <deque>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include <contours/cell_contour.hpp>
+#include <nestgrid/detail/inlining.hpp>
 #include <nestgrid/keys.hpp>
 #include <nestgrid/shape.hpp>
 #include <walk/gradient.hpp>
@@ -45,11 +46,24 @@ inline CornerGradient corner_gradient(const Topology& t, std::span<const Point> 
     return {dual.gradient(rise), std::abs(dual.volume)};
 }
 
+/// The gradient of a tetrahedron: that at its first corner.
+inline CornerGradient tetrahedron_gradient(std::span<const Point, 4> x,
+                                           std::span<const double, 4> value) {
+    const DualVectors dual = dual_vectors({x[1] - x[0], x[2] - x[0], x[3] - x[0]}, 3);
+    if (dual.volume == 0) return {};
+    return {dual.gradient({value[1] - value[0], value[2] - value[0], value[3] - value[0]}),
+            std::abs(dual.volume)};
+}
+
 /// The gradients at all corners. Where the map from the reference element is affine, all corners
 /// have the same axes, and a simplex has the same gradient at all of them.
 /// \param out as many as corners
 inline void corner_gradients(const Topology& t, std::span<const Point> x,
                              std::span<const double> value, std::span<CornerGradient> out) {
+    if (t.dimension == 3 && t.corners == 4) {
+        std::ranges::fill(out, tetrahedron_gradient(x.first<4>(), value.first<4>()));
+        return;
+    }
     if (t.corners == t.dimension + 1U) {
         std::ranges::fill(out, corner_gradient(t, x, value, 0));
         return;
@@ -67,64 +81,74 @@ inline void corner_gradients(const Topology& t, std::span<const Point> x,
 
 /// Gradients at nodes: the weighted mean of the gradients that are added at each.
 ///
-/// Memory: 40 bytes a node and, in the hash table, 4 bytes a slot, of which at most five eighths
-/// are used. Nothing is reserved beyond that: surfaces have millions of nodes.
+/// Memory: 40 bytes a node, in pieces of 1,024 nodes, and, in the hash table, 4 bytes a slot, of
+/// which at most five eighths are used. Nothing is reserved beyond that: surfaces have millions of
+/// nodes.
 class NodeGradients {
 public:
     using Index = std::uint32_t;
 
     /// The slot of a node, which is new where the node is.
-    Index slot(NodeKey node) {
-        if (8 * (keys_.size() + 1) > 5 * slots_.size()) grow();
+    NESTGRID_INLINE Index slot(NodeKey node) {
+        if (8 * (count_ + 1) > 5 * slots_.size()) grow();
         Index& at = place(node);
         if (at == none_) {
-            at = static_cast<Index>(keys_.size());
-            keys_.push_back(node);
-            sums_.push_back({});
+            if (count_ == pieces_.size() * piece_) pieces_.push_back(std::make_unique<Piece>());
+            at = static_cast<Index>(count_++);
+            of(at) = {node, {}};
         }
         return at;
     }
     void add(Index slot, const CornerGradient& g) {
-        CornerGradient& sum = sums_[slot];
+        CornerGradient& sum = of(slot).sum;
         sum.gradient = sum.gradient + g.weight * g.gradient;
         sum.weight += g.weight;
     }
     /// Makes a node one without gradients.
-    void forget(Index slot) { sums_[slot] = {}; }
-    bool known(Index slot) const { return sums_[slot].weight > 0; }
-    Point mean(Index slot) const { return (1 / sums_[slot].weight) * sums_[slot].gradient; }
+    void forget(Index slot) { of(slot).sum = {}; }
+    bool known(Index slot) const { return of(slot).sum.weight > 0; }
+    Point mean(Index slot) const { return (1 / of(slot).sum.weight) * of(slot).sum.gradient; }
 
-    /// The keys of the nodes, by slot.
-    const std::deque<NodeKey>& nodes() const { return keys_; }
+    /// How many slots there are, and the node of each.
+    std::size_t count() const { return count_; }
+    NodeKey node(Index slot) const { return of(slot).key; }
 
     void clear() {
         std::ranges::fill(slots_, none_);
-        keys_.clear();
-        sums_.clear();
+        count_ = 0;
     }
 
     std::size_t memory_bytes() const {
-        return slots_.capacity() * sizeof(Index) +
-               keys_.size() * (sizeof(NodeKey) + sizeof(CornerGradient));
+        return slots_.capacity() * sizeof(Index) + pieces_.size() * sizeof(Piece);
     }
 
 private:
     static constexpr Index none_ = std::numeric_limits<Index>::max();
+    static constexpr std::size_t piece_ = 1024;
 
-    Index& place(NodeKey node) {
+    struct Node {
+        NodeKey key;
+        CornerGradient sum;  // the weighted sum, and the sum of weights
+    };
+    using Piece = std::array<Node, piece_>;
+
+    Node& of(Index slot) { return (*pieces_[slot / piece_])[slot % piece_]; }
+    const Node& of(Index slot) const { return (*pieces_[slot / piece_])[slot % piece_]; }
+
+    NESTGRID_INLINE Index& place(NodeKey node) {
         const std::size_t mask = slots_.size() - 1;
         auto at = static_cast<std::size_t>(nestgrid::detail::mix(node)) & mask;
-        while (slots_[at] != none_ && keys_[slots_[at]] != node) at = (at + 1) & mask;
+        while (slots_[at] != none_ && of(slots_[at]).key != node) at = (at + 1) & mask;
         return slots_[at];
     }
-    void grow() {
+    NESTGRID_NOINLINE void grow() {
         slots_.assign(std::max<std::size_t>(1024, 2 * slots_.size()), none_);
-        for (Index i = 0; i < keys_.size(); ++i) place(keys_[i]) = i;
+        for (Index i = 0; i < count_; ++i) place(of(i).key) = i;
     }
 
-    std::vector<Index> slots_;         // a hash table: by key of the node
-    std::deque<NodeKey> keys_;         // by slot
-    std::deque<CornerGradient> sums_;  // weighted sums, and sums of weights, by slot
+    std::vector<Index> slots_;                    // a hash table: by key of the node
+    std::vector<std::unique_ptr<Piece>> pieces_;  // nodes by slot
+    std::size_t count_ = 0;                       // of nodes
 };
 
 }  // namespace nestgrid::engine

@@ -80,6 +80,18 @@ private:
         return {(1 / area) * n, area};
     }
 
+    /// Whether the normals at the corners agree with a triangle so well that rounding does not
+    /// matter: without roots and divisions, and mostly the case. No for any that overflow.
+    bool agrees_clearly(const CornerNumbers& t) const {
+        const Point n = cross(x_[t[1]] - x_[t[0]], x_[t[2]] - x_[t[0]]);
+        const double least = 1.01 * least_of_gradient * least_of_gradient * dot(n, n);
+        const auto agrees = [&](std::uint32_t v) {
+            const double along = dot(normals_[v], n);
+            return along > 0 && along * along > least;
+        };
+        return agrees(t[0]) && agrees(t[1]) && agrees(t[2]);
+    }
+
     template <class Function>
     void for_each_of_fans(const Function& function) const;
 
@@ -101,6 +113,7 @@ private:
 /// Refuses normals whose cosine with a triangle is too small.
 void SettledNormals::refuse() {
     for (const CornerNumbers& t : triangles_) {
+        if (agrees_clearly(t)) continue;
         const FanTriangle seen = look_at(t);
         if (seen.area == 0) continue;
         for (const std::uint32_t v : t) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,15 +14,9 @@
 #include <nestgrid/detail/union_find.hpp>
 #include <nestgrid/error.hpp>
 
-#include <surfaces/triangle_sides.hpp>
-
 namespace nestgrid {
 
 namespace {
-
-using engine::for_each_edge;
-using engine::OrientedSide;
-using Sides = std::vector<OrientedSide>;
 
 /// \throw InvalidInput where a triangle repeats a vertex or names one that does not exist
 void require_triangles(const Surface<3>& surface) {
@@ -35,67 +31,149 @@ void require_triangles(const Surface<3>& surface) {
     }
 }
 
-void count_edges(const Sides& sides, const Surface<3>& surface, SurfaceReport& report) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary;
-    for (const auto& edge : surface.boundary) boundary.emplace_back(std::minmax(edge[0], edge[1]));
-    std::sort(boundary.begin(), boundary.end());
-    for_each_edge(sides, [&](std::span<const OrientedSide> edge) {
-        ++report.edges;
-        if (edge.size() == 1) {
-            const bool known = std::binary_search(boundary.begin(), boundary.end(), edge[0].ends());
-            ++(known ? report.boundary_edges : report.open_edges);
-        } else if (edge.size() > 2) {
-            ++report.nonmanifold_edges;
-        } else if (edge[0].forward == edge[1].forward) {
-            ++report.misoriented_edges;
+/// The side of a triangle that a vertex sees: the triangle runs from the vertex to `next`, then to
+/// `last`.
+struct SeenSide {
+    std::uint32_t next;
+    std::uint32_t last;
+};
+using Link = std::span<const SeenSide>;
+
+/// The sides that each vertex sees, one vertex after the other.
+class Links {
+public:
+    explicit Links(const Surface<3>& surface) : first_(surface.vertices.size() + 1, 0) {
+        for (const auto& t : surface.simplices) {
+            for (const std::uint32_t v : t) ++first_[v + std::size_t{1}];
         }
-    });
-}
-
-/// The number of a triangle's corner at a vertex, among all corners.
-std::uint32_t corner_at(const Surface<3>& surface, std::uint32_t triangle, std::uint32_t vertex) {
-    const auto& v = surface.simplices[triangle];
-    return 3 * triangle + (v[0] == vertex ? 0U : v[1] == vertex ? 1U : 2U);
-}
-
-/// Counts the vertices whose triangles do not form one fan. Corners are joined where their
-/// triangles share a side, so that each class is a fan.
-std::size_t count_nonmanifold_vertices(const Surface<3>& surface, const Sides& sides) {
-    detail::UnionFind fans(3 * surface.simplices.size());
-    for_each_edge(sides, [&](std::span<const OrientedSide> edge) {
-        for (const OrientedSide& side : edge.subspan(1)) {
-            for (const std::uint32_t v : {side.low, side.high}) {
-                fans.join(corner_at(surface, edge[0].triangle, v),
-                          corner_at(surface, side.triangle, v));
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        sides_.resize(3 * surface.simplices.size());
+        for (const auto& t : surface.simplices) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                sides_[first_[t[i]]++] = {t[(i + 1) % 3], t[(i + 2) % 3]};
             }
         }
-    });
-    constexpr std::uint32_t none = 0xFFFFFFFFU;
-    std::vector<std::uint32_t> fan_of(surface.vertices.size(), none);
-    std::vector<bool> bad(surface.vertices.size(), false);
-    for (std::uint32_t c = 0; c < 3 * surface.simplices.size(); ++c) {
-        const std::uint32_t v = surface.simplices[c / 3][c % 3];
-        const std::uint32_t fan = fans.root(c);
-        if (fan_of[v] == none) fan_of[v] = fan;
-        if (fan_of[v] != fan) bad[v] = true;
+        // Each now tells where its vertex's sides end.
     }
-    return static_cast<std::size_t>(std::count(bad.begin(), bad.end(), true));
+    Link of(std::size_t vertex) const {
+        const std::size_t begin = vertex == 0 ? 0 : first_[vertex - 1];
+        return Link(sides_).subspan(begin, first_[vertex] - begin);
+    }
+
+private:
+    std::vector<std::size_t> first_;
+    std::vector<SeenSide> sides_;
+};
+
+/// Whether the sides are one ring, each beginning where another ends: what most vertices see.
+bool is_ring(Link link) {
+    constexpr std::size_t most = 32;  // so that a vertex of many triangles does not take long
+    if (link.size() > most) return false;
+    std::uint32_t at = link[0].last;
+    std::size_t steps = 1;
+    for (; at != link[0].next && steps < link.size(); ++steps) {
+        std::size_t i = 0;
+        while (i < link.size() && link[i].next != at) ++i;
+        if (i == link.size()) return false;
+        at = link[i].last;
+    }
+    return at == link[0].next && steps == link.size();
 }
 
-/// Counts the vertices that belong to a triangle, and the components that edges make of them.
-void count_vertices(const Surface<3>& surface, SurfaceReport& report) {
+/// Counts edges, vertices and what is wrong with them, from what the vertices see.
+class LinkCounts {
+public:
+    LinkCounts(const Surface<3>& surface, SurfaceReport& report) : report_{report} {
+        for (const auto& edge : surface.boundary) {
+            boundary_.emplace_back(std::minmax(edge[0], edge[1]));
+        }
+        std::sort(boundary_.begin(), boundary_.end());
+        const Links links(surface);
+        for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
+            const Link link = links.of(v);
+            if (link.empty()) continue;
+            ++report_.vertices;
+            if (!is_ring(link)) {
+                count_others(v, link);
+                continue;
+            }
+            for (const SeenSide& side : link) report_.edges += side.next > v ? 1U : 0U;
+        }
+    }
+
+private:
+    /// An edge of a triangle at the vertex.
+    struct Spoke {
+        std::uint32_t end;   // the other vertex
+        std::uint32_t side;  // of the triangle, in the link
+        bool leaves;         // the triangle runs from the vertex to the other one
+    };
+
+    /// Counts the edges to vertices of higher numbers, and whether the triangles form one fan:
+    /// those that share an edge are in one.
+    void count_others(std::uint32_t vertex, Link link) {
+        spokes_.clear();
+        for (std::uint32_t i = 0; i < link.size(); ++i) {
+            spokes_.push_back({link[i].next, i, true});
+            spokes_.push_back({link[i].last, i, false});
+        }
+        std::ranges::stable_sort(spokes_, {}, &Spoke::end);
+        detail::UnionFind fans(link.size());
+        for (std::span<const Spoke> rest = spokes_; !rest.empty();) {
+            std::size_t count = 1;
+            while (count < rest.size() && rest[count].end == rest[0].end) {
+                fans.join(rest[0].side, rest[count++].side);
+            }
+            if (rest[0].end > vertex) count_edge(vertex, rest.first(count));
+            rest = rest.subspan(count);
+        }
+        std::size_t roots = 0;
+        for (std::uint32_t i = 0; i < link.size(); ++i) roots += fans.root(i) == i ? 1U : 0U;
+        if (roots > 1) ++report_.nonmanifold_vertices;
+    }
+    /// \param spokes those of the triangles on the edge from the vertex to one of a higher number
+    void count_edge(std::uint32_t vertex, std::span<const Spoke> spokes) {
+        ++report_.edges;
+        if (spokes.size() == 1) {
+            const bool known = std::binary_search(boundary_.begin(), boundary_.end(),
+                                                  std::pair(vertex, spokes[0].end));
+            ++(known ? report_.boundary_edges : report_.open_edges);
+        } else if (spokes.size() > 2) {
+            ++report_.nonmanifold_edges;
+        } else if (spokes[0].leaves == spokes[1].leaves) {
+            ++report_.misoriented_edges;
+        }
+    }
+
+    SurfaceReport& report_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary_;  // ends ascending, sorted
+    std::vector<Spoke> spokes_;                                      // of the vertex at hand
+};
+
+/// Counts the components that edges make of the vertices.
+std::size_t count_components(const Surface<3>& surface, std::size_t used) {
     detail::UnionFind components(surface.vertices.size());
-    std::vector<bool> used(surface.vertices.size(), false);
+    std::size_t joins = 0;
     for (const auto& t : surface.simplices) {
-        for (const std::uint32_t v : t) used[v] = true;
-        components.join(t[0], t[1]);
-        components.join(t[0], t[2]);
+        for (std::size_t i = 1; i < 3; ++i) {
+            const auto a = components.root(t[0]);
+            const auto b = components.root(t[i]);
+            if (a == b) continue;
+            components.join(a, b);
+            ++joins;
+        }
     }
-    for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
-        if (!used[v]) continue;
-        ++report.vertices;
-        if (components.root(v) == v) ++report.components;
-    }
+    return used - joins;
+}
+
+/// Whether a triangle is far from degenerate(), for lengths that neither overflow nor vanish.
+/// \param limit 4 epsilon times the greatest coordinate of all vertices
+bool is_clearly_wide(const std::array<Point, 3>& corner, const Point& n, double limit) {
+    const Point a = corner[1] - corner[0];
+    const Point b = corner[2] - corner[1];
+    const Point c = corner[0] - corner[2];
+    const double longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
+    return dot(n, n) > 1.01 * limit * limit * longest;
 }
 
 /// Whether the corners of a triangle are on a line, or at one place, up to the rounding of their
@@ -117,6 +195,11 @@ bool is_degenerate(const Point& origin, const std::array<Point, 3>& corner, doub
 double measure(const Surface<3>& surface, SurfaceReport& report) {
     const bool has_normals = surface.normals.size() == surface.vertices.size();
     const Point origin = surface.vertices.empty() ? Point{} : surface.vertices.front();
+    double greatest = 0;
+    for (const Point& x : surface.vertices) {
+        for (const double coordinate : x) greatest = std::max(greatest, std::abs(coordinate));
+    }
+    const double limit = 4 * std::numeric_limits<double>::epsilon() * greatest;
     double volume = 0;
     for (const auto& t : surface.simplices) {
         const Point a = surface.vertices[t[0]] - origin;
@@ -124,7 +207,9 @@ double measure(const Surface<3>& surface, SurfaceReport& report) {
         const Point c = surface.vertices[t[2]] - origin;
         const Point n = cross(b - a, c - a);
         const double area = norm(n) / 2;
-        if (is_degenerate(origin, {a, b, c}, 2 * area)) ++report.degenerate_triangles;
+        if (!is_clearly_wide({a, b, c}, n, limit) && is_degenerate(origin, {a, b, c}, 2 * area)) {
+            ++report.degenerate_triangles;
+        }
         report.area += area;
         for (const std::uint32_t v : t) {
             const bool behind = has_normals && dot(surface.normals[v], n) < 0;
@@ -141,10 +226,8 @@ SurfaceReport surface_report(const Surface<3>& surface) {
     SurfaceReport report;
     report.triangles = surface.simplices.size();
     require_triangles(surface);
-    const Sides sides = engine::sorted_sides(surface.simplices);
-    count_edges(sides, surface, report);
-    count_vertices(surface, report);
-    report.nonmanifold_vertices = count_nonmanifold_vertices(surface, sides);
+    LinkCounts(surface, report);
+    report.components = count_components(surface, report.vertices);
     report.euler = static_cast<long long>(report.vertices) - static_cast<long long>(report.edges) +
                    static_cast<long long>(report.triangles);
     const double volume = measure(surface, report);

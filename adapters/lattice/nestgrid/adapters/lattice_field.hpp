@@ -85,6 +85,23 @@ private:
     NESTGRID_INLINE value_type at(typename Grid::Place p) const {
         return static_cast<value_type>(samples_[grid_->sample(p)]);
     }
+    /// Of a node with neighbours along all axes: the gradient, unless a sample is not a number.
+    NESTGRID_INLINE bool inner_gradient(typename Grid::Place p, Point& gradient) const {
+        constexpr auto dimension = static_cast<std::size_t>(Grid::dimension);
+        for (std::size_t d = 0; d < dimension; ++d) {
+            if (grid_->at(p, d) - 1U >= grid_->samples(d) - 2) return false;
+        }
+        const Sample* const centre = samples_.data() + grid_->sample(p);
+        gradient = {0, 0, 0};
+        for (std::size_t d = 0; d < dimension; ++d) {
+            const auto stride = static_cast<std::ptrdiff_t>(grid_->sample_stride(d));
+            const double rise =
+                static_cast<double>(centre[stride]) - static_cast<double>(centre[-stride]);
+            gradient = gradient + 0.5 * rise * dual_[d];
+        }
+        return !std::is_floating_point_v<Sample> ||
+               !std::isnan(gradient[0] + gradient[1] + gradient[2]);
+    }
     double rise_beside_missing(std::size_t centre, std::size_t up, std::size_t down,
                                std::size_t d) const;
     static std::array<Point, 3> dual_axes(const LatticeGeometry<Grid::dimension>& geometry);
@@ -96,8 +113,10 @@ private:
 
 template <class Grid, class Sample>
 Point LatticeField<Grid, Sample>::gradient_at(typename Grid::Place p) const {
-    const std::size_t centre = grid_->sample(p);
     Point gradient{0, 0, 0};
+    if (inner_gradient(p, gradient)) return gradient;
+    gradient = {0, 0, 0};
+    const std::size_t centre = grid_->sample(p);
     for (std::size_t d = 0; d < static_cast<std::size_t>(Grid::dimension); ++d) {
         const std::size_t x = std::min<std::size_t>(grid_->at(p, d), grid_->samples(d) - 1);
         const std::size_t up = x + 1 < grid_->samples(d) ? 1 : 0;
