@@ -52,6 +52,7 @@ std::string write_vtp(vtkPolyData* surface, const std::filesystem::path& path,
             writer->SetCompressorTypeToNone();
     }
     writer->SetHeaderTypeToUInt64();
+    writer->SetBlockSize(std::size_t{1} << 20U);  // blocks of 32 KB, as by default, take longer
     return written_by(writer.Get(), path);
 }
 
