@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include <nestgrid/adapters/octree_grid.hpp>
 #include <nestgrid/algorithms/isolines.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 
@@ -436,15 +437,15 @@ TEST(Isolines, RefusesWrongInput) {
     segment.attributes.clear();
     EXPECT_THROW(detail::append_polylines(lines, segment, 0), InvalidInput);
 
-    const auto plane = BalancedQuadtree::grids();
-    const auto space = BalancedOctree::grids();
-    const std::vector<double> four(plane[0].node_count(), 1.0);
-    const std::vector<double> eight(space[0].node_count(), 1.0);
-    const NodeField<OctreeGrid<2>, double> flat(plane[0], four);
-    const NodeField<OctreeGrid<3>, double> solid(space[0], eight);
-    EXPECT_THROW(isolines(plane[0], flat, std::array{nan}), InvalidInput);
-    EXPECT_THROW(isolines(plane[0], flat, std::array{0.0}, {.threshold = -1}), InvalidInput);
-    EXPECT_THROW(isolines(erase(space[0], solid), std::array{0.0}), InvalidInput);
+    const OctreeGrid<2> plane(quadrilaterals(1));
+    const OctreeGrid<3> space(hexahedra(1));
+    const std::vector<double> four(plane.node_count(), 1.0);
+    const std::vector<double> eight(space.node_count(), 1.0);
+    const NodeField<OctreeGrid<2>, double> flat(plane, four);
+    const NodeField<OctreeGrid<3>, double> solid(space, eight);
+    EXPECT_THROW(isolines(plane, flat, std::array{nan}), InvalidInput);
+    EXPECT_THROW(isolines(plane, flat, std::array{0.0}, {.threshold = -1}), InvalidInput);
+    EXPECT_THROW(isolines(erase(space, solid), std::array{0.0}), InvalidInput);
 }
 
 }  // namespace isolines_test

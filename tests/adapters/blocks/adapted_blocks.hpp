@@ -40,6 +40,21 @@ public:
         return positions;
     }
 
+    /// The roots, whose corners are numbers of nodes.
+    CoarseGrid coarse_grid() const {
+        CoarseGrid roots;
+        roots.dimension = dim;
+        for (std::size_t i = 0; i < this->coarse_count(); ++i) {
+            std::array<NodeKey, corners> keys;
+            this->corner_keys(this->coarse(i).element, keys);
+            std::array<std::uint32_t, corners> nodes;
+            for (std::size_t k = 0; k < corners; ++k)
+                nodes[k] = static_cast<std::uint32_t>(keys[k]);
+            roots.add(BlockGrid<dim>::only_shape, nodes);
+        }
+        return roots;
+    }
+
     /// The numbers of the new nodes of an element.
     std::span<const std::uint32_t> new_nodes(const Element& e, Context& context) const {
         std::array<NodeKey, static_cast<std::size_t>(BlockGrid<dim>::max_new_nodes)> keys;

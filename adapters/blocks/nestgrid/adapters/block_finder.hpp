@@ -87,6 +87,23 @@ public:
         return -1;
     }
 
+    /// Calls f(number of a box, some of its cells in a range) until it answers false; all cells in
+    /// boxes come once. Returns whether f never did.
+    template <class Function>
+    bool for_each_part_within(const Range& range, Function&& f) const {
+        bool goes_on = true;
+        const Range part = range.clipped(hull_);
+        if (part.count() == 0) return true;
+        for_each_bin(part, [&](std::size_t bin, const Range& cells) {
+            for (std::size_t i = first_[bin]; goes_on && i < first_[bin + 1]; ++i) {
+                const Range& box = boxes_[static_cast<std::size_t>(listed_[i])];
+                const Range own = part.clipped(cells).clipped(box);
+                if (own.count() > 0) goes_on = f(listed_[i], own);
+            }
+        });
+        return goes_on;
+    }
+
     /// How many cells of a range are in boxes.
     std::int64_t count_within(const Range& range) const {
         std::int64_t count = 0;

@@ -135,6 +135,10 @@ public:
     /// \param node its finest place
     /// \param near whose box is looked at first
     Around leaves_around(const Place& node, const BlockCell<dim>& near) const;
+    /// Calls f(level, box) for the boxes that have leaves below an element, or at it, until f
+    /// answers false. A box may come several times.
+    template <class Function>
+    void for_each_box_below(const Element& e, Function&& f) const;
     /// The extent of the cells of a level, in finest places.
     std::int32_t extent(std::size_t level) const {
         return std::int32_t{1} << (finest_depth() - levels_[level].depth);

@@ -72,6 +72,39 @@ std::uint64_t BlockGrid<dim>::owned_at_border(const Level& level, std::int32_t b
 }
 
 template <int dim>
+template <class Function>
+void BlockGrid<dim>::for_each_box_below(const Element& e, Function&& f) const {
+    if (split(e) == nullptr) {
+        const BlockCell<dim> cell = cell_of(e);
+        f(static_cast<std::size_t>(cell.level), static_cast<std::size_t>(cell.box));
+        return;
+    }
+    const auto finer = [](detail::CellRange<dim> range, unsigned steps) {
+        for (std::size_t d = 0; d < size_; ++d) {
+            range.low[d] <<= steps;
+            range.high[d] <<= steps;
+        }
+        return range;
+    };
+    detail::CellRange<dim> whole{e.cell, e.cell};
+    for (std::int32_t& x : whole.high) ++x;
+    std::size_t l = e.depth < levels_[0].depth ? 0 : level_of_[e.depth] + std::size_t{1};
+    for (bool goes_on = true; goes_on && l < levels_.size(); ++l) {
+        const Level& level = levels_[l];
+        const Level* const next = l + 1 < levels_.size() ? &levels_[l + 1] : nullptr;
+        goes_on = level.finder.for_each_part_within(
+            finer(whole, level.depth - e.depth),
+            [&](std::int32_t box, const detail::CellRange<dim>& cells) {
+                if (next != nullptr) {
+                    const auto below = finer(cells, next->depth - level.depth);
+                    if (next->finder.count_within(below) == below.count()) return true;
+                }
+                return f(l, static_cast<std::size_t>(box));
+            });
+    }
+}
+
+template <int dim>
 auto BlockGrid<dim>::box_size(std::size_t level, std::size_t box) const -> Place {
     const auto& range = levels_[level].finder.boxes()[box];
     Place size{};
