@@ -220,28 +220,59 @@ int expect_end(MpiRanks& ranks, const char* what, const std::string& part, const
     return failed;
 }
 
-/// A folder that is not there, and a disk that takes 2,000 bytes from the last rank.
+/// Limits how long a file of this rank may get, as a full disk does, while it lives.
+class FullDisk {
+public:
+    explicit FullDisk(bool is) {
+        std::signal(SIGXFSZ, SIG_IGN);
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit little{is ? 2000 : before_.rlim_cur, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &little);
+    }
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+    ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+private:
+    rlimit before_{};
+};
+
+/// A folder that is not there, a disk that takes 2,000 bytes from all ranks or from the last one,
+/// and a name that another thing has: nothing is left on any rank.
 int end_together(const Scene& scene, MpiRanks& ranks, const fs::path& folder) {
     int failed = 0;
+    const int last = ranks.size() - 1;
+    const std::string of_last = "rank " + std::to_string(last) + ": '";
     const fs::path nowhere = folder / "nowhere" / "surface.vtp";
     scene.with_piece(scene.isovalues()[0], [&](const auto& piece, const auto& joined) {
+        const auto expect_nothing_left = [&](const char* what) {
+            ranks.gather({});
+            failed += wrong(ranks.rank() == 0 && !fs::is_empty(folder), what);
+            ranks.gather({});
+        };
         failed += expect_end(ranks, "no folder", "rank 0: '" + nowhere.string(),
                              [&] { write_vtp(ranks, piece, joined, nowhere); });
         failed += expect_end(ranks, "no folder for pieces", "could not be written", [&] {
             write_pvtp(ranks, piece, joined, folder / "nowhere" / "surface.pvtp");
         });
-        std::signal(SIGXFSZ, SIG_IGN);
-        rlimit before{};
-        getrlimit(RLIMIT_FSIZE, &before);
-        const rlimit little{2000, before.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &little);
-        const fs::path full = folder / "full.vtp";
-        failed +=
-            expect_end(ranks, "full disk", "rank ", [&] { write_vtp(ranks, piece, joined, full); });
-        setrlimit(RLIMIT_FSIZE, &before);
-        failed +=
-            wrong(ranks.rank() == 0 && (fs::exists(full) || fs::exists(full.string() + ".part")),
-                  "something is left of a file that could not be written");
+        failed += expect_end(ranks, "full disk", "rank ", [&] {
+            const FullDisk full(true);
+            write_vtp(ranks, piece, joined, folder / "full.vtp");
+        });
+        expect_nothing_left("something is left of a file that could not be written");
+        failed += expect_end(ranks, "full disk of one rank", of_last, [&] {
+            const FullDisk full(ranks.rank() == last);
+            write_pvtp(ranks, piece, joined, folder / "full.pvtp");
+        });
+        expect_nothing_left("pieces are left where one could not be written");
+        const fs::path taken = folder / ("taken_" + std::to_string(last) + ".vtp");
+        if (ranks.rank() == 0) fs::create_directory(taken);
+        ranks.gather({});
+        failed += expect_end(ranks, "a folder of that name", of_last,
+                             [&] { write_pvtp(ranks, piece, joined, folder / "taken.pvtp"); });
+        ranks.gather({});
+        if (ranks.rank() == 0) fs::remove(taken);
+        expect_nothing_left("pieces are left where one could not be named");
     });
     return failed;
 }
@@ -315,6 +346,8 @@ int run(const fs::path& folder) {
     }
     failed += write_far(scene, ranks, folder);
     ranks.gather({});
+    if (ranks.rank() == 0) fs::remove(folder / "far.vtp");
+    ranks.gather({});
     failed += end_together(scene, ranks, folder);
     ranks.gather({});
     if (ranks.rank() == 0) fs::remove_all(folder);
@@ -325,9 +358,29 @@ int run(const fs::path& folder) {
 
 }  // namespace
 
+/// How many of these do not refuse with such a sentence.
+template <class Ask>
+int expect_refused(const std::string& sentence, const Ask& ask) {
+    try {
+        ask();
+    } catch (const InvalidInput& e) {
+        if (e.what() == sentence) return 0;
+    }
+    std::printf("'%s' is not said\n", sentence.c_str());
+    return 1;
+}
+
 int main(int argc, char** argv) {
+    int failed = expect_refused("MPI was not initialised: call MPI_Init first",
+                                [] { MpiRanks(MPI_COMM_WORLD).rank(); });
     MPI_Init(&argc, &argv);
-    const int failed = run(argc > 1 ? argv[1] : "mpi_files_test.folder");
+    std::optional<MpiRanks> outlives(MPI_COMM_WORLD);
+    failed += run(argc > 1 ? argv[1] : "mpi_files_test.folder");
     MPI_Finalize();
+    constexpr const char* over = "MPI has been finalised";
+    failed += expect_refused(over, [&] { outlives->gather({}); });
+    failed += expect_refused(over, [&] { outlives->exchange({}); });
+    failed += expect_refused(over, [] { MpiRanks(MPI_COMM_WORLD).rank(); });
+    outlives.reset();
     return failed;
 }

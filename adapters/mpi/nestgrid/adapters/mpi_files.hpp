@@ -8,13 +8,14 @@
 //     global numbers, and those that another rank owns are marked as duplicates.
 // Ranks without triangles write nothing, and are in no list.
 //
-// A file has its name once it is whole: before, it ends in ".part", and where a rank cannot write,
-// nothing is left of it. All functions are collective.
+// A file has its name once it is whole: before, it ends in ".part". Where a rank cannot write,
+// nothing is left of any file, on any rank. All functions are collective.
 #pragma once
 
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -119,19 +120,39 @@ private:
     std::string failed_;
 };
 
-/// Writes a file, which gets its name once it is whole. \return what is wrong, or nothing
-template <class Write>
-std::string write_whole_file(const std::string& path, const Write& write) {
-    const std::string part = path + ".part";
-    {
-        std::ofstream out(part, std::ios::binary);
+/// A file that a rank writes alone. Nothing is left of it unless keep() is called.
+class OwnFile {
+public:
+    explicit OwnFile(std::string path) : path_{std::move(path)}, now_{path_ + ".part"} {}
+    OwnFile(const OwnFile&) = delete;
+    OwnFile& operator=(const OwnFile&) = delete;
+    ~OwnFile() {
+        if (!kept_) std::remove(now_.c_str());
+    }
+
+    /// \return what is wrong, or nothing
+    template <class Write>
+    std::string write(const Write& write) {
+        std::ofstream out(now_, std::ios::binary);
         write(out);
         out.close();
-        if (out && std::rename(part.c_str(), path.c_str()) == 0) return {};
+        return out ? "" : "'" + path_ + "' could not be written";
     }
-    std::remove(part.c_str());
-    return "'" + path + "' could not be written";
-}
+    /// Gives the file its name. \return what is wrong, or nothing
+    std::string name() {
+        if (std::rename(now_.c_str(), path_.c_str()) != 0) {
+            return "'" + path_ + "' could not be given its name";
+        }
+        now_ = path_;
+        return {};
+    }
+    void keep() { kept_ = true; }
+
+private:
+    std::string path_;
+    std::string now_;  // the name that it has
+    bool kept_ = false;
+};
 
 /// What all pieces have alike.
 struct VtkColumns {
@@ -205,15 +226,15 @@ void write_pvtp(MpiRanks& ranks, const Piece& piece, const JoinedPiece& joined,
     const std::string stem = path.substr(0, path.rfind(".pvtp")) + "_";
     const auto name_of = [&](std::size_t rank) { return stem + std::to_string(rank) + ".vtp"; };
     detail::VtkPiece own = detail::numbered_piece(ranks.rank(), surface, joined);
-    std::string failed;
-    if (own.simplices > 0) {
-        failed =
-            detail::write_whole_file(name_of(static_cast<std::size_t>(ranks.rank())),
-                                     [&](std::ostream& out) { detail::write_piece(out, own); });
-    }
-    detail::require_written(ranks, failed);
     const std::vector<Ranks::Bytes> any =
         ranks.gather(Ranks::Bytes(own.simplices > 0 ? 1 : 0, std::byte{0}));
+    std::optional<detail::OwnFile> file;
+    std::optional<detail::OwnFile> list;
+    std::string failed;
+    if (own.simplices > 0) {
+        file.emplace(name_of(static_cast<std::size_t>(ranks.rank())));
+        failed = file->write([&](std::ostream& out) { detail::write_piece(out, own); });
+    }
     if (ranks.rank() == 0) {
         std::vector<std::string> files;
         for (std::size_t r = 0; r < any.size(); ++r) {
@@ -228,10 +249,18 @@ void write_pvtp(MpiRanks& ranks, const Piece& piece, const JoinedPiece& joined,
             add("attribute " + std::to_string(c + 1), 1);
         }
         if (columns.normals) add("Normals", 3);
-        failed = detail::write_whole_file(
-            path, [&](std::ostream& out) { detail::write_list(out, own, files); });
+        list.emplace(path);
+        const std::string wrong =
+            list->write([&](std::ostream& out) { detail::write_list(out, own, files); });
+        if (failed.empty()) failed = wrong;
     }
+    // Files get their names once all are whole, and are kept once all have them.
     detail::require_written(ranks, failed);
+    if (file) failed = file->name();
+    if (list && failed.empty()) failed = list->name();
+    detail::require_written(ranks, failed);
+    if (file) file->keep();
+    if (list) list->keep();
 }
 
 }  // namespace nestgrid
