@@ -76,7 +76,8 @@ private:
         std::array<Place, max_corners> at{};
         for (std::size_t k = 0; k < leaf.corners; ++k) at[k] = leaf.reference_corner(k);
         for (int level = e.level; level > 0; --level) {
-            const Child& child = shape->rule->children[e.way >> 4 * (level - 1) & 15U];
+            const auto number = static_cast<std::size_t>(e.way >> 4 * (level - 1) & 15U);
+            const Child& child = shape->rule->children[number];
             at = child_places(*shape, at, child);
             shape = &parts_of(child.shape);
         }

@@ -166,7 +166,7 @@ TEST(HighOrderCurved, LinesAreClosedAndWithinBothBounds) {
 /// tolerance asks for; slices through its middle are disks.
 TEST(HighOrderCurved, BallsAreRound) {
     const Bend bend{on_ball, 4, 4};
-    const CurvedBoxes<3> ball(bend, WorldOptions{.cells = 2, .levels = 1}, square<3>);
+    const CurvedBoxes<3> ball(bend, WorldOptions{.cells = 2, .levels = 1, .refined = 1}, square<3>);
     // How far the leaves themselves are from the sphere: interpolation of degree 4.
     const double off_leaves = 4e-3;
     std::size_t before = 0;

@@ -153,7 +153,7 @@ mesh hanging.vtu "$square 2 0 0 2 0.5 0 1 0.5 0 2 1 0" '9 9 9' '0 1 2 1 2 2 2 2'
 refused 1 "'hanging.vtu': a face of cell 0 is divided on its other side" isosurface hanging.vtu --value 0.5
 quadratic='0 0 0 1 0 0 1 1 0 0 1 0 0.5 0.1 0 1 0.5 0 0.5 1 0 0 0.5 0'
 mesh curved.vtu "$quadratic" 23 '0 1 2 1 0.3 1.5 1.5 0.5' '0 1 2 3 4 5 6 7' 8
-run isosurface curved.vtu --value 0.5
+run info curved.vtu
 grep -q '^1 cells are curved, by up to 0.1 in units of length' out || fail "curved: $(cat out)"
 mesh empty.vtu "$square" '' '0 1 2 1' '' ''
 refused 1 "'empty.vtu'" isosurface empty.vtu --value 0.5
