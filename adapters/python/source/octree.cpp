@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <nestgrid/adapters/gathered_roots.hpp>
 #include <nestgrid/adapters/linear_octree.hpp>
 #include <nestgrid/algorithms/detail/node_means.hpp>
 
@@ -400,11 +401,30 @@ public:
     OctreeLeaves leaves() const override { return forest_->leaves(); }
 
 private:
+    /// Many trees are gathered, so that a surface looks at those alone that it passes through.
+    struct Kept {
+        explicit Kept(const std::shared_ptr<const Forest<dim>>& from)
+            : forest{from},
+              grid(from->grid()),
+              gathered(grid),
+              field(grid, from->element_nodes(), from->values()) {}
+
+        Kept(const Kept&) = delete;
+        Kept& operator=(const Kept&) = delete;
+        ~Kept() = default;
+
+        std::shared_ptr<const Forest<dim>> forest;
+        Grid grid;
+        GatheredRoots<Grid> gathered;
+        Field field;
+    };
+
     static std::shared_ptr<Prerolls> field_of(const std::shared_ptr<const Forest<dim>>& forest,
                                               const Call& call) {
-        const auto grid = std::make_shared<const Grid>(forest->grid());
-        const Field field(*grid, forest->element_nodes(), forest->values());
-        const Frames one = shared_frames(grid, std::vector{field}, {0}, forest);
+        const auto kept = std::make_shared<const Kept>(forest);
+        const std::shared_ptr<const GatheredRoots<Grid>> grid(kept, &kept->gathered);
+        const Frames one =
+            shared_frames(grid, std::vector{GatheredField(*grid, kept->field)}, {0}, kept);
         return (forest->any_missing() ? one.without_missing(call.work()) : one)[0];
     }
 
