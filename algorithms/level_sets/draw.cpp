@@ -47,15 +47,13 @@ namespace {
 /// Tells functions of position apart by their values at one point.
 template <class Real>
 std::string of_functions(const Levels<Real>& levels) {
-    if (levels.functions == nullptr || levels.hierarchy->coarse_count() == 0) return {};
-    Coarse coarse;
-    Family family;
-    levels.hierarchy->coarse(levels.hierarchy->open().get(), 0, coarse, family);
+    const SharedNodes* const shared = levels.hierarchy->facts().shared;
+    if (levels.functions == nullptr || shared == nullptr) return {};
     std::string text;
     for (std::size_t i = 0; i < levels.functions->count(); ++i) {
         text += "a slice by a function with the value " +
-                all_digits(levels.functions->template at<double>(i, coarse.corners[0])) + " at " +
-                text_of(coarse.corners[0]) + ", ";
+                all_digits(levels.functions->template at<double>(i, shared->corner())) + " at " +
+                text_of(shared->corner()) + ", ";
     }
     return text;
 }

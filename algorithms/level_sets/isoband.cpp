@@ -62,6 +62,10 @@ Isosurface<dimension> engine::isoband(const Hierarchy<Real>& hierarchy, double l
                                          criterion, bounds, options, executor);
     Isosurface<dimension>& band = levels[0];
     append_reversed(band.surface, levels[1].surface);
+    // Both surfaces may have a vertex between the same nodes.
+    for (const auto& [a, b] : levels[1].names) {
+        band.names.push_back({nestgrid::detail::mix(a), nestgrid::detail::mix(b)});
+    }
     band.counts.extracted += levels[1].counts.extracted;
     band.add_bounds(levels[1]);
     band.position_bound = std::max(band.position_bound, levels[1].position_bound);

@@ -71,19 +71,6 @@ Point node_gradient(OwnGradients<Real>& own, const ElementView<Real>& father, co
     return detail::interpolate(local, parent.data());
 }
 
-/// The way down to an element, coarse element first.
-template <class Real>
-DrawingPlace place_of(const ElementView<Real>& view) {
-    DrawingPlace place;
-    for (const ElementView<Real>* at = &view; at->father != nullptr; at = at->father) {
-        place.push_back(static_cast<char>(at->child));
-    }
-    for (std::size_t coarse = view.coarse, i = 0; i < 8; ++i, coarse >>= 8U) {
-        place.push_back(static_cast<char>(coarse & 0xFFU));
-    }
-    return {place.rbegin(), place.rend()};
-}
-
 }  // namespace
 
 template <class Real>
@@ -122,10 +109,10 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
 template <class Real>
 void Normals<Real>::log_shared(const ElementCuts<Real>& element,
                                std::span<const CornerGradient> drawn) {
-    DrawingPlace place;
+    WalkPlace place;
     for (std::size_t i = 0; i < drawn.size(); ++i) {
         if (!shared_->is_shared(element.keys()[i])) continue;
-        if (place.empty()) place = place_of(element.view());
+        if (place.empty()) place = walk_place_of(element.view(), *shared_);
         of_shared_.add(element.keys()[i], place, drawn[i]);
     }
 }

@@ -8,27 +8,9 @@
 
 namespace nestgrid::engine {
 
-namespace {
-
-/// Where a walk of all ranks meets an element: earlier ones have lesser strings.
-template <class Real>
-std::string walk_place_of(const ElementView<Real>& view) {
-    if (view.father == nullptr) {
-        std::string place;
-        for (unsigned shift = 32; shift > 0; shift -= 8) {
-            place += static_cast<char>(view.coarse >> (shift - 8U) & 0xFFU);
-        }
-        return place;
-    }
-    return walk_place_of(*view.father) + static_cast<char>(view.child);
-}
-
-}  // namespace
-
 template <class Real>
 FoundPoints<Real>::FoundPoints(const Hierarchy<Real>& hierarchy, std::size_t points)
-    : depth_(points, -std::numeric_limits<double>::infinity()),
-      on_ranks_{hierarchy.facts().shared != nullptr} {
+    : depth_(points, -std::numeric_limits<double>::infinity()), shared_{hierarchy.facts().shared} {
     result_.components = static_cast<std::size_t>(hierarchy.facts().components);
     result_.values.assign(points * result_.components, std::numeric_limits<double>::quiet_NaN());
     result_.level.assign(points, -1);
@@ -45,7 +27,7 @@ void FoundPoints<Real>::offer(const ElementView<Real>& view, std::uint32_t point
         element_ = static_cast<std::uint32_t>(result_.elements.size());
         result_.elements.append(view.element());
         result_.shape_of.push_back(view.shape);
-        if (on_ranks_) place_.push_back(walk_place_of(view));
+        if (shared_ != nullptr) place_.push_back(walk_place_of(view, *shared_));
     }
     depth_[point] = depth;
     result_.level[point] = view.level;
@@ -66,7 +48,7 @@ void FoundPoints<Real>::agree(Ranks& ranks) {
     Bytes own;
     for (std::uint32_t p = 0; p < depth_.size(); ++p) {
         if (result_.element_of[p] == none) continue;
-        const std::string& place = place_[result_.element_of[p]];
+        const WalkPlace& place = place_[result_.element_of[p]];
         put(own, p);
         put(own, depth_[p]);
         put(own, static_cast<std::uint32_t>(place.size()));
@@ -75,7 +57,7 @@ void FoundPoints<Real>::agree(Ranks& ranks) {
         put(own, result_.reference[p]);
         for (double& value : values_at(p)) put(own, value);
     }
-    std::vector<std::string> first(depth_.size());
+    std::vector<WalkPlace> first(depth_.size());
     for (std::uint32_t p = 0; p < depth_.size(); ++p) {
         if (result_.element_of[p] != none) first[p] = place_[result_.element_of[p]];
     }
@@ -89,10 +71,10 @@ void FoundPoints<Real>::agree(Ranks& ranks) {
 /// Takes what another rank has found at a point, where that is deeper or comes first.
 /// \param first where the element of each point is met
 template <class Real>
-void FoundPoints<Real>::take(Reader& in, std::vector<std::string>& first) {
+void FoundPoints<Real>::take(Reader& in, std::vector<WalkPlace>& first) {
     const auto p = in.get<std::uint32_t>();
     const auto depth = in.get<double>();
-    std::string place(in.get<std::uint32_t>(), 0);
+    WalkPlace place(in.get<std::uint32_t>(), 0);
     for (char& digit : place) digit = in.get<char>();
     const auto level = in.get<int>();
     const auto reference = in.get<Point>();

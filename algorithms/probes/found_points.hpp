@@ -5,16 +5,14 @@
 // and of several such elements that of the first one.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/algorithms/ranks.hpp>
+#include <ranks/walk_place.hpp>
 #include <walk/element_view.hpp>
 
 namespace nestgrid::engine {
-
-class Reader;
 
 template <class Real>
 class FoundPoints {
@@ -41,14 +39,14 @@ private:
     std::span<double> values_at(std::uint32_t point) {
         return std::span(result_.values).subspan(point * result_.components, result_.components);
     }
-    void take(Reader& in, std::vector<std::string>& first);
+    void take(Reader& in, std::vector<WalkPlace>& first);
 
     static constexpr std::uint32_t none = ProbeResult::no_element;
 
     ProbeResult result_;
-    std::vector<double> depth_;  // of each point in its element
-    bool on_ranks_;
-    std::vector<std::string> place_;  // of each element in a walk of all ranks, where there are any
+    std::vector<double> depth_;     // of each point in its element
+    const SharedNodes* shared_;     // null on one process
+    std::vector<WalkPlace> place_;  // of each element, where there are ranks
     std::uint32_t element_ = none;
 };
 

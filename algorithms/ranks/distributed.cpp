@@ -3,6 +3,7 @@
 #include <nestgrid/algorithms/distributed.hpp>
 
 #include <bit>
+#include <limits>
 #include <string>
 
 #include <nestgrid/detail/forwarding_hierarchy.hpp>
@@ -73,14 +74,29 @@ std::vector<SharedNodes::Candidate> nodes_of(const Hierarchy<float>& grid) {
     return nodes;
 }
 
+/// A corner of the first coarse element of all ranks. Collective.
+/// \param first, corner of the elements of this rank
+Point corner_of_all(Ranks& ranks, std::uint64_t first, const Point& corner) {
+    std::uint64_t least = first;
+    ranks.reduce(std::span(&least, 1), Ranks::Reduction::min);
+    constexpr double none = -std::numeric_limits<double>::infinity();
+    Point x = first == least ? corner : Point{none, none, none};
+    std::array<double*, 3> along{&x[0], &x[1], &x[2]};
+    take_greatest(ranks, along);
+    return x;
+}
+
 }  // namespace
 
 }  // namespace engine
 
-std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<float>& grid,
-                                                               Ranks& ranks,
-                                                               std::size_t most_sharers) {
-    const auto shared = std::make_shared<engine::SharedNodes>(ranks, grid.epoch());
+std::shared_ptr<const engine::SharedNodes> detail::share_nodes(
+    const Hierarchy<float>& grid, Ranks& ranks, std::size_t most_sharers,
+    const std::function<std::uint64_t(std::size_t)>& place) {
+    std::vector<std::uint64_t> places;
+    for (std::size_t i = 0; place && i < grid.coarse_count(); ++i) places.push_back(place(i));
+    const auto shared =
+        std::make_shared<engine::SharedNodes>(ranks, grid.epoch(), std::move(places));
     const engine::BeforeSharing before(grid, *shared);
     std::vector<engine::SharedNodes::Candidate> nodes;
     const auto asked = [&] {
@@ -88,13 +104,25 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
                                                : "a distributed grid") +
                std::string(grid.offers(Feature::new_positions) ? ", curved, of dimension "
                                                                : ", of dimension ") +
-               std::to_string(grid.facts().dimension) + " with nodes of more than " +
-               std::to_string(most_sharers) + " ranks told to all";
+               std::to_string(grid.facts().dimension) +
+               (place ? "" : ", " + std::to_string(grid.coarse_count()) + " coarse elements,") +
+               " with nodes of more than " + std::to_string(most_sharers) + " ranks told to all";
     };
+    std::uint64_t first = ~std::uint64_t{0};
+    Coarse coarse;
     engine::together(shared.get(), asked, [&] {
         engine::require_drawn_on_ranks(grid);
         nodes = engine::nodes_of(before);
+        std::size_t at = 0;
+        for (std::size_t i = 0; i < grid.coarse_count(); ++i) {
+            if (shared->coarse_place(i) >= first) continue;
+            first = shared->coarse_place(i);
+            at = i;
+        }
+        Family family;
+        if (grid.coarse_count() > 0) grid.coarse(grid.open().get(), at, coarse, family);
     });
+    shared->set_corner(engine::corner_of_all(ranks, first, coarse.corners[0]));
     shared->find(nodes, most_sharers, engine::may_differ(grid));
     shared->set_hanging(engine::hanging_across(before, *shared));
     return shared;

@@ -24,7 +24,7 @@ void SharedGradients::sum_up(const SharedNodes& shared, NodeGradients& sums) {
         while (in.more()) {
             const auto node = in.get<NodeKey>();
             const auto gradient = in.get<CornerGradient>();
-            DrawingPlace place(in.get<std::uint8_t>(), '\0');
+            WalkPlace place(in.get<std::uint8_t>(), '\0');
             for (char& step : place) step = in.get<char>();
             if (shared.is_shared(node)) terms_.push_back({node, std::move(place), gradient});
         }

@@ -12,22 +12,18 @@
 // around vertices that both have.
 #pragma once
 
-#include <string>
-
 #include <ranks/shared_nodes.hpp>
 #include <ranks/vertex_copies.hpp>
+#include <ranks/walk_place.hpp>
 #include <surfaces/node_gradients.hpp>
 
 namespace nestgrid::engine {
-
-/// Where an element is in the order in which one rank draws: coarse element, and way down.
-using DrawingPlace = std::string;
 
 /// Terms of gradients at shared nodes.
 class SharedGradients {
 public:
     /// \param place of the element whose term this is
-    void add(NodeKey node, const DrawingPlace& place, const CornerGradient& gradient) {
+    void add(NodeKey node, const WalkPlace& place, const CornerGradient& gradient) {
         terms_.push_back({node, place, gradient});
     }
     void append(const SharedGradients& other) {
@@ -40,7 +36,7 @@ public:
 private:
     struct Term {
         NodeKey node;
-        DrawingPlace place;
+        WalkPlace place;
         CornerGradient gradient;
     };
     std::vector<Term> terms_;

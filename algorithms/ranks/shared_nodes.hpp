@@ -31,7 +31,9 @@ public:
         std::uint64_t place;  ///< a hash of where it lies, the same on all ranks
     };
 
-    SharedNodes(Ranks& ranks, std::uint64_t epoch) : ranks_{&ranks}, epoch_{epoch} {}
+    /// \param coarse_places of coarse elements, where ranks list others; else none
+    SharedNodes(Ranks& ranks, std::uint64_t epoch, std::vector<std::uint64_t> coarse_places)
+        : ranks_{&ranks}, epoch_{epoch}, coarse_places_{std::move(coarse_places)} {}
 
     /// Finds out which other ranks have the same nodes. Collective.
     /// \param candidates at least all nodes that others may have, each once
@@ -44,10 +46,15 @@ public:
     Ranks& ranks() const { return *ranks_; }
     /// The state of the grid for which they were found.
     std::uint64_t epoch() const { return epoch_; }
+    /// A corner of the first coarse element of all ranks, the same on each.
+    const Point& corner() const { return corner_; }
+    void set_corner(const Point& x) { corner_ = x; }
     std::size_t count() const { return index_.size(); }
     std::span<const NodeKey> common() const { return common_; }
-    /// Whether this rank has a common node.
-    bool has_common(std::size_t i) const { return common_here_[i]; }
+    /// Where a coarse element is among those of all ranks: they lie in the order of these.
+    std::uint64_t coarse_place(std::size_t i) const {
+        return coarse_places_.empty() ? i : coarse_places_[i];
+    }
     bool is_shared(NodeKey node) const { return index_.find(node) != nullptr; }
     bool all_shared(std::span<const NodeKey> nodes) const {
         return std::all_of(nodes.begin(), nodes.end(), [&](NodeKey n) { return is_shared(n); });
@@ -89,6 +96,8 @@ private:
 
     Ranks* ranks_;
     std::uint64_t epoch_;
+    std::vector<std::uint64_t> coarse_places_;  // none: their numbers
+    Point corner_{0, 0, 0};
     std::vector<NodeKey> keys_;                     // of nodes that are not common, in order
     std::vector<std::vector<int>> sharers_;         // of each: the other ranks, in order
     std::vector<std::vector<std::uint32_t>> with_;  // of each rank: the numbers of the nodes

@@ -182,6 +182,25 @@ function(nestgrid_warnings target)
                       $<$<BOOL:${NESTGRID_WERROR}>:-Werror>)
 endfunction()
 
+# nestgrid_on_ranks(<test>...): tests that run ranks of MPI, as root, and more of them than processors.
+function(nestgrid_on_ranks)
+  set_tests_properties(
+    ${ARGN}
+    PROPERTIES
+      LABELS "distributed;mpi"
+      PROCESSORS 2
+      ENVIRONMENT
+      "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1")
+endfunction()
+
+# nestgrid_ranks_test(<name> <ranks> <seconds> <command>): a command on so many ranks.
+function(nestgrid_ranks_test name ranks timeout)
+  add_test(NAME ${name} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} ${ARGN})
+  nestgrid_on_ranks(${name})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout})
+endfunction()
+
+
 function(nestgrid_install_package)
   include(CMakePackageConfigHelpers)
   # What a compiler of C does not link of its own accord, and an archive needs.

@@ -5,9 +5,6 @@
 // one process draws on all of it.
 #pragma once
 
-#include <bit>
-#include <cmath>
-#include <cstdio>
 #include <functional>
 #include <memory>
 
@@ -24,39 +21,17 @@
 
 #include <nestgrid/adapters/dealii.hpp>
 #include <nestgrid/adapters/mpi.hpp>
-#include <nestgrid/algorithms/distributed.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/algorithms/slice.hpp>
+
+#include "drawn_on_ranks.hpp"
 
 namespace nestgrid_test {
-
-using namespace nestgrid;
-
-template <int dim>
-using Simplex = std::array<Point, dim>;
-
-template <int dim>
-struct Drawn {
-    std::vector<Simplex<dim>> simplices;
-    double bound = 0;
-    std::array<std::uint64_t, 3> counts{};
-    bool operator==(const Drawn&) const = default;
-};
-
-inline double random_of(const Point& x) {
-    std::uint64_t sum = 0;
-    for (const double along : x) {
-        sum = detail::mix64(sum + std::bit_cast<std::uint64_t>(along + 0.0));
-    }
-    return static_cast<double>(sum >> 11U) * 0x1p-53 - 0.5;
-}
 
 /// The distance from a sphere, perhaps with noise.
 template <int dim>
 double value(const dealii::Point<dim>& at, bool noise) {
     Point x{0, 0, 0};
     for (unsigned d = 0; d < dim; ++d) x[d] = at[d];
-    return 0.35 - norm(x - Point{0.51, 0.47, dim == 3 ? 0.52 : 0}) + (noise ? random_of(x) : 0);
+    return sphere(x, dim == 2, noise);
 }
 
 /// Refines at a sphere that grows, and coarsens elsewhere; some cells are refined at random.
@@ -126,70 +101,6 @@ struct Problem {
     dealii::AffineConstraints<double> constraints;
 };
 
-template <int dim, class AnyGrid, class Field>
-std::vector<Drawn<dim>> draw(const AnyGrid& grid, const Field& field) {
-    std::vector<Drawn<dim>> all;
-    const HierarchicalIndicator indicator(grid, field);
-    const auto add = [&](const Isosurface<dim>& result) {
-        Drawn<dim>& drawn = all.emplace_back();
-        for (const auto& simplex : result.surface.simplices) {
-            auto& corners = drawn.simplices.emplace_back();
-            for (std::size_t k = 0; k < dim; ++k) corners[k] = result.surface.vertices[simplex[k]];
-        }
-        drawn.bound = result.error_bound;
-        drawn.counts = {result.counts.calls, result.counts.visited, result.counts.extracted};
-    };
-    for (const double epsilon : {0.0, 0.02, 0.3}) {
-        for (const bool cap : {false, true}) {
-            add(isosurface(grid, field, 0.0, under(indicator, epsilon), {.cap = cap}));
-        }
-    }
-    if constexpr (dim == 3) {
-        const Plane plane({0.5, 0.5, 0.5}, {0.3, 0.2, 1});
-        add(slice(grid, field, plane, under(indicator, 0.1)));
-        add(slice(grid, field, Plane({0.5, 0.5, 0.5}, {1, 1, 0})));
-    }
-    return all;
-}
-
-template <int dim>
-void sort(std::vector<Simplex<dim>>& simplices) {
-    for (auto& s : simplices) std::rotate(s.begin(), std::min_element(s.begin(), s.end()), s.end());
-    std::sort(simplices.begin(), simplices.end());
-}
-
-template <int dim>
-std::uint64_t hash_of(const std::vector<Drawn<dim>>& all) {
-    std::uint64_t sum = 0;
-    const auto add = [&](double x) {
-        sum = detail::mix64(sum + std::bit_cast<std::uint64_t>(x + 0.0));
-    };
-    for (const Drawn<dim>& drawn : all) {
-        for (const auto& simplex : drawn.simplices) {
-            for (const Point& x : simplex) std::for_each(x.begin(), x.end(), add);
-        }
-        add(drawn.bound);
-    }
-    return sum;
-}
-
-/// On rank 0, the surfaces of all ranks together.
-template <int dim>
-std::vector<Drawn<dim>> gathered(std::vector<Drawn<dim>> own, Ranks& ranks) {
-    for (Drawn<dim>& drawn : own) {
-        const auto bytes = std::as_bytes(std::span(drawn.simplices));
-        const auto all = ranks.gather({bytes.begin(), bytes.end()});
-        drawn.simplices.clear();
-        for (const Ranks::Bytes& each : all) {
-            const auto* const begin = reinterpret_cast<const Simplex<dim>*>(each.data());
-            drawn.simplices.insert(drawn.simplices.end(), begin,
-                                   begin + each.size() / sizeof(Simplex<dim>));
-        }
-        sort<dim>(drawn.simplices);
-    }
-    return own;
-}
-
 // Vectors with the values of one problem that a rank has, as the solver's packages keep them.
 template <int dim>
 auto dealii_vector(const Problem<dim>& problem, bool noise) {
@@ -236,22 +147,14 @@ public:
         const DealiiGrid<dim> mine(parts_);
         const Distributed grid(mine, *ranks_);
         const DistributedField field(grid, DealiiField(mine, problem.dofs, values));
-        const auto found = gathered<dim>(draw<dim>(grid, field), *ranks_);
+        auto own = draw<dim>(grid, field);
+        const auto found = gathered<dim>(std::move(own), *ranks_);
         const auto leaves = static_cast<unsigned long long>(parts_.n_global_active_cells());
         if (ranks_->rank() != 0) return 0;
-        const auto expected = draw_alone(noise);
-        int wrong = whole_.n_active_cells() == leaves ? 0 : 1;
-        std::size_t simplices = 0;
-        for (std::size_t i = 0; i < expected.size(); ++i) {
-            wrong += found[i] == expected[i] ? 0 : 1;
-            simplices += expected[i].simplices.size();
-        }
-        std::printf(
-            "%d ranks, %-28s %-6s: %6llu leaves, %zu surfaces of %6zu simplices, hash "
-            "%016llx, %d differ\n",
-            ranks_->size(), name_, noise ? "noise" : "smooth", leaves, expected.size(), simplices,
-            static_cast<unsigned long long>(hash_of(expected)), wrong);
-        return wrong;
+        const std::string name = name_ + std::string(noise ? ", noise" : ", smooth");
+        const int other_leaves = whole_.n_active_cells() == leaves ? 0 : 1;
+        return other_leaves +
+               count_different(name, ranks_->size(), leaves, found, draw_alone(noise));
     }
     template <class MakeVector>
     int adapt_and_compare(const MakeVector& vector) {
@@ -271,7 +174,7 @@ private:
         problem.set(values, noise);
         const DealiiGrid<dim> grid(whole_);
         auto all = draw<dim>(grid, DealiiField(grid, problem.dofs, values));
-        for (Drawn<dim>& drawn : all) sort<dim>(drawn.simplices);
+        sort(all);
         return all;
     }
 

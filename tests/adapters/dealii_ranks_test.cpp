@@ -97,31 +97,6 @@ int on_dimension(Ranks& ranks) {
     return wrong;
 }
 
-/// Counts what is not refused as it should be.
-class Refusals {
-public:
-    explicit Refusals(Ranks& ranks) : ranks_{&ranks} {}
-
-    /// \param sentence which all ranks must throw
-    template <class Exception, class Ask>
-    void expect(const std::string& sentence, const Ask& ask) {
-        try {
-            ask();
-        } catch (const Exception& e) {
-            const std::string said = e.what();
-            if (said.find(sentence) != std::string::npos) return;
-            std::printf("rank %d: %s\n", ranks_->rank(), said.c_str());
-        }
-        std::printf("rank %d does not say: %s\n", ranks_->rank(), sentence.c_str());
-        ++wrong;
-    }
-
-    int wrong = 0;
-
-private:
-    Ranks* ranks_;
-};
-
 /// Vectors that lack values, and triangulations that are not drawn, end all ranks alike.
 int refuse(Ranks& ranks) {
     if (ranks.size() == 1) return 0;
@@ -178,14 +153,12 @@ int refuse(Ranks& ranks) {
 int main(int argc, char** argv) {
     const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
     MpiRanks ranks(MPI_COMM_WORLD);
-    std::uint64_t wrong = 0;
+    int wrong = 0;
     try {
-        wrong = static_cast<std::uint64_t>(on_dimension<2>(ranks) + on_dimension<3>(ranks) +
-                                           refuse(ranks));
+        wrong = on_dimension<2>(ranks) + on_dimension<3>(ranks) + refuse(ranks);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "rank %d: %s\n", ranks.rank(), e.what());
         MPI_Abort(MPI_COMM_WORLD, 1);
     }
-    ranks.reduce(std::span(&wrong, 1), Ranks::Reduction::sum);
-    return wrong == 0 ? 0 : 1;
+    return status_of_all(ranks, wrong);
 }

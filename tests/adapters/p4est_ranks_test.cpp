@@ -3,34 +3,24 @@
 //
 // Surfaces of forests that p8est distributes over MPI, refined and repartitioned several times: the
 // pieces of all ranks, gathered, are the surface of the same forest on one process. Run under
-// mpirun; prints what it compared, and returns 1 where something differs. With the argument "die"
-// one rank ends without a word, and MPI ends the others.
+// mpirun; prints what it compared, and returns 1 where something differs. With the arguments "kill"
+// or "exit" and the number of a step one rank ends in that without a word, and MPI ends the others.
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <memory>
+#include <cstdlib>
 
 #include <p8est_extended.h>
 #include <p8est_ghost.h>
 
 #include <nestgrid/adapters/mpi.hpp>
 #include <nestgrid/adapters/p4est.hpp>
-#include <nestgrid/algorithms/distributed.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/algorithms/slice.hpp>
 
-using namespace nestgrid;
+#include "drawn_on_ranks.hpp"
+
+using namespace nestgrid_test;
 
 namespace {
-
-using Triangle = std::array<Point, 3>;
-
-struct Drawn {
-    std::vector<Triangle> triangles;
-    double bound = 0;
-    std::array<std::uint64_t, 3> counts{};
-    bool operator==(const Drawn&) const = default;
-};
 
 /// Refines at a sphere.
 int wants(p8est_t* forest, p4est_topidx_t tree, p8est_quadrant_t* q) {
@@ -88,11 +78,6 @@ private:
 
 using Grid = P4estGrid<3>;
 
-double value(const Point& x, NodeKey key, bool noise) {
-    const double random = static_cast<double>(hash(key) >> 11U) * 0x1p-53 - 0.5;
-    return 0.35 - norm(x - Point{0.51, 0.47, 0.52}) + (noise ? random : 0.0);
-}
-
 /// Calls function(leaf, keys, places of the corners) for the leaves here.
 template <class Function>
 void for_each_leaf(const Grid& grid, const Grid::Element& e, const Function& function) {
@@ -125,7 +110,7 @@ struct KeyedField {
             for_each_leaf(of, of.coarse(t).element,
                           [&](const Grid::Element&, const auto& keys, const auto& x) {
                               for (std::size_t k = 0; k < 8; ++k) {
-                                  values.insert(keys[k], value(x[k], keys[k], noise));
+                                  values.insert(keys[k], sphere(x[k], false, noise));
                               }
                           });
         }
@@ -160,65 +145,17 @@ std::vector<double> lnode_values(const Grid& grid, const p8est_lnodes_t& nodes, 
     const detail::P4estFaceCodes<3> codes(&nodes, grid.leaf_count());
     for (std::size_t t = 0; t < grid.coarse_count(); ++t) {
         for_each_leaf(grid, grid.coarse(t).element,
-                      [&](const Grid::Element& e, const auto& keys, const auto& x) {
+                      [&](const Grid::Element& e, const auto&, const auto& x) {
                           const std::size_t leaf = grid.leaf_index(e);
                           const unsigned code = codes[leaf];
                           for (unsigned k = 0; k < 8; ++k) {
                               if (codes.hangs(code, codes.own_corner(code) ^ k)) continue;
                               values[static_cast<std::size_t>(nodes.element_nodes[8 * leaf + k])] =
-                                  value(x[k], keys[k], noise);
+                                  sphere(x[k], false, noise);
                           }
                       });
     }
     return values;
-}
-
-template <class AnyGrid, class Field>
-std::vector<Drawn> draw(const AnyGrid& grid, const Field& field) {
-    std::vector<Drawn> all;
-    const HierarchicalIndicator indicator(grid, field);
-    const auto add = [&](const Isosurface<3>& result) {
-        Drawn& drawn = all.emplace_back();
-        for (const auto& t : result.surface.simplices) {
-            const auto& x = result.surface.vertices;
-            drawn.triangles.push_back({x[t[0]], x[t[1]], x[t[2]]});
-        }
-        drawn.bound = result.error_bound;
-        drawn.counts = {result.counts.calls, result.counts.visited, result.counts.extracted};
-    };
-    for (const double epsilon : {0.0, 0.01, 0.3}) {
-        for (const bool cap : {false, true}) {
-            add(isosurface(grid, field, 0.0, under(indicator, epsilon), {.cap = cap}));
-        }
-    }
-    for (const Point& normal : {Point{1, 1, 0}, Point{1, 0, 0}, Point{0.3, 0.2, 1}}) {
-        const Plane plane({0.5, 0.5, 0.5}, normal);
-        add(slice(grid, field, plane));
-        add(slice(grid, field, plane, under(indicator, 0.3)));
-    }
-    return all;
-}
-
-void sort(std::vector<Triangle>& triangles) {
-    for (Triangle& t : triangles)
-        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    std::sort(triangles.begin(), triangles.end());
-}
-
-/// On rank 0, the surfaces of all ranks together.
-std::vector<Drawn> gathered(std::vector<Drawn> own, Ranks& ranks) {
-    for (Drawn& drawn : own) {
-        const auto bytes = std::as_bytes(std::span(drawn.triangles));
-        const auto all = ranks.gather({bytes.begin(), bytes.end()});
-        drawn.triangles.clear();
-        for (const Ranks::Bytes& each : all) {
-            const auto* const begin = reinterpret_cast<const Triangle*>(each.data());
-            drawn.triangles.insert(drawn.triangles.end(), begin,
-                                   begin + each.size() / sizeof(Triangle));
-        }
-        sort(drawn.triangles);
-    }
-    return own;
 }
 
 /// Bends trees, continuously where those of the unit cube, of bricks and of rotated cubes meet.
@@ -236,36 +173,35 @@ struct Bent {
     }
 };
 
-std::vector<Drawn> draw_on_ranks(const Forest& forest, bool noise, std::size_t sharers,
-                                 Ranks& ranks) {
+std::vector<Drawn<3>> draw_on_ranks(const Forest& forest, bool noise, std::size_t sharers,
+                                    Ranks& ranks) {
     const Grid mine(forest.get());
     const Distributed grid(mine, ranks, sharers);
     if (forest.nodes() == nullptr) {
-        return draw(grid, DistributedField(grid, KeyedField(mine, noise)));
+        auto all = draw<3>(grid, DistributedField(grid, KeyedField(mine, noise)));
+        return all;
     }
     const auto values = lnode_values(mine, *forest.nodes(), noise);
-    auto all = draw(grid, DistributedField(grid, P4estNodalField(mine, forest.nodes(), values)));
+    auto all = draw<3>(grid, DistributedField(grid, P4estNodalField(mine, forest.nodes(), values)));
     const P4estGrid curved(forest.get(), Bent{forest.get()->connectivity});
     const Distributed bent(curved, ranks, sharers);
     const DistributedField field(bent, P4estNodalField(curved, forest.nodes(), values));
-    for (Drawn& drawn : draw(bent, field)) all.push_back(std::move(drawn));
+    append(all, draw<3>(bent, field));
     return all;
 }
 
-std::vector<Drawn> draw_alone(const Forest& forest, bool noise) {
+std::vector<Drawn<3>> draw_alone(const Forest& forest, bool noise) {
     const Grid grid(forest.get());
-    std::vector<Drawn> all;
+    std::vector<Drawn<3>> all;
     if (forest.nodes() == nullptr) {
-        all = draw(grid, KeyedField(grid, noise));
+        all = draw<3>(grid, KeyedField(grid, noise));
     } else {
         const auto values = lnode_values(grid, *forest.nodes(), noise);
-        all = draw(grid, P4estNodalField(grid, forest.nodes(), values));
+        all = draw<3>(grid, P4estNodalField(grid, forest.nodes(), values));
         const P4estGrid bent(forest.get(), Bent{forest.get()->connectivity});
-        for (Drawn& drawn : draw(bent, P4estNodalField(bent, forest.nodes(), values))) {
-            all.push_back(std::move(drawn));
-        }
+        append(all, draw<3>(bent, P4estNodalField(bent, forest.nodes(), values)));
     }
-    for (Drawn& drawn : all) sort(drawn.triangles);
+    sort(all);
     return all;
 }
 
@@ -277,19 +213,12 @@ int compare(const char* name, p8est_connectivity_t* shape, bool balanced, bool n
     const auto found = gathered(draw_on_ranks(parts, noise, sharers, ranks), ranks);
     if (ranks.rank() != 0) return 0;
     const auto expected = draw_alone(Forest(MPI_COMM_SELF, shape, deepest, balanced), noise);
-    int wrong = 0;
-    std::size_t triangles = 0;
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-        wrong += found[i] == expected[i] ? 0 : 1;
-        triangles += expected[i].triangles.size();
-    }
-    std::printf(
-        "%d ranks, %-9s %-10s %-6s %2zu sharers: %lld leaves, %zu surfaces of %zu "
-        "triangles, %d differ\n",
-        ranks.size(), name, balanced ? "balanced" : "unbalanced", noise ? "noise" : "smooth",
-        sharers, static_cast<long long>(parts.get()->global_num_quadrants), expected.size(),
-        triangles, wrong);
-    return wrong;
+    const std::string what = std::string(name) + (balanced ? ", balanced" : ", unbalanced") +
+                             (noise ? ", noise, " : ", smooth, ") + std::to_string(sharers) +
+                             " sharers";
+    return count_different(what, ranks.size(),
+                           static_cast<unsigned long long>(parts.get()->global_num_quadrants),
+                           found, expected);
 }
 
 /// A plane through many nodes, along a diagonal of all leaves: where each rank merges vertices at
@@ -352,34 +281,56 @@ struct BrokenField : KeyedField {
 /// One rank fails, or asks for something else: all end with one sentence, and none waits.
 int end_together(Ranks& ranks) {
     p8est_connectivity_t* const cube = p8est_connectivity_new_unitcube();
-    int wrong = 0;
+    Refusals refusals(ranks);
     {
         const Forest forest(MPI_COMM_WORLD, cube, 3, false);
         const Grid mine(forest.get());
         const Distributed grid(mine, ranks);
         const int last = ranks.size() - 1;
-        const auto expect = [&](const std::string& sentence, const auto& draws) {
-            try {
-                draws();
-                ++wrong;
-            } catch (const std::exception& e) {
-                wrong += std::string(e.what()).find(sentence) == std::string::npos ? 1 : 0;
-            }
-        };
-        expect("rank " + std::to_string(last) + ": the disk is gone", [&] {
+        refusals.expect<std::exception>("rank " + std::to_string(last) + ": the disk is gone", [&] {
             const DistributedField broken(grid, BrokenField(mine, ranks.rank() == last));
             const HierarchicalIndicator indicator(grid, broken);
         });
         const DistributedField field(grid, KeyedField(mine, false));
         const HierarchicalIndicator indicator(grid, field);
-        expect(last == 0 ? "isovalue" : "all ranks must ask for the same", [&] {
+        const std::string sentence = last == 0 ? "isovalue" : "all ranks must ask for the same";
+        refusals.expect<InvalidInput>(sentence, [&] {
             const double other = last == 0 ? std::nan("") : 0.125;
             isosurface(grid, field, ranks.rank() == last ? other : 0.0, under(indicator, 0));
         });
     }
     p8est_connectivity_destroy(cube);
-    if (wrong != 0) std::printf("rank %d does not end with the others\n", ranks.rank());
-    return wrong;
+    return refusals.wrong;
+}
+
+/// A field with which the last rank dies in a step: 0 values, 1 preroll, 2 surface.
+struct DyingField : KeyedField {
+    DyingField(const Grid& of, const int* now, int in, void (*how)())
+        : KeyedField(of, false), step{now}, dies_in{in}, die{how} {}
+    NodeMask new_values(const Grid::Element& e, NodeMask which, std::span<double> out) const {
+        if (*step == dies_in) die();
+        return KeyedField::new_values(e, which, out);
+    }
+    const int* step;
+    int dies_in;
+    void (*die)();
+};
+
+/// The last rank dies in a step, before the first where it is -1: MPI ends the others.
+void die_in(int step, void (*how)()) {
+    MpiRanks ranks(MPI_COMM_WORLD);
+    const bool dies = ranks.rank() == ranks.size() - 1;
+    if (dies && step < 0) how();
+    int now = 0;
+    p8est_connectivity_t* const cube = p8est_connectivity_new_unitcube();
+    const Forest forest(MPI_COMM_WORLD, cube, 3, false);
+    const Grid mine(forest.get());
+    const Distributed grid(mine, ranks);
+    const DistributedField field(grid, DyingField(mine, &now, dies ? step : -1, how));
+    now = 1;
+    const HierarchicalIndicator indicator(grid, field);
+    now = 2;
+    isosurface(grid, field, 0.0, under(indicator, 0.01));
 }
 
 int run() {
@@ -400,9 +351,7 @@ int run() {
         }
         p8est_connectivity_destroy(shape.connectivity);
     }
-    std::array<std::uint64_t, 1> all{static_cast<std::uint64_t>(wrong)};
-    ranks.reduce(all, Ranks::Reduction::sum);
-    return all[0] == 0 ? 0 : 1;
+    return status_of_all(ranks, wrong);
 }
 
 }  // namespace
@@ -411,10 +360,11 @@ int main(int argc, char** argv) {
     MPI_Init(&argc, &argv);
     sc_init(MPI_COMM_WORLD, 0, 0, nullptr, SC_LP_ERROR);
     p4est_init(nullptr, SC_LP_ERROR);
-    if (argc > 1 && std::string(argv[1]) == "die") {
-        MpiRanks ranks(MPI_COMM_WORLD);
-        if (ranks.rank() == ranks.size() - 1) std::raise(SIGKILL);
-        ranks.gather({});
+    if (argc > 2) {
+        const bool exits = std::string(argv[1]) == "exit";
+        die_in(
+            std::atoi(argv[2]), exits ? [] { std::exit(0); } : [] { std::raise(SIGKILL); });
+        return 0;
     }
     const int failed = run();
     MPI_Finalize();

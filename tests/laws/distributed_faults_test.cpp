@@ -179,6 +179,10 @@ TEST(DistributedFaults, RanksAskForDifferentThings) {
                    {"all ranks must ask for the same", "rank 2", "0.125"});
     expect_all_say("cap", {.options = {.cap = true}},
                    {"all ranks must ask for the same", "rank 2", "with caps"});
+    expect_all_say("criterion", {.projection = {.threshold = 0.01, .blend = 2}},
+                   {"all ranks must ask for the same", "rank 2"});
+    expect_all_say("indicator", {.projection = {.threshold = 0.01, .indicator = "visual"}},
+                   {"all ranks must ask for the same", "rank 2"});
     expect_all_say("sharers", {.most_sharers = 3},
                    {"all ranks must ask for the same", "rank 2", "more than 3"});
     expect_all_say("type of values", {.as_floats = true},

@@ -35,6 +35,20 @@ Record::Numbers numbers_of_drawn(const Result& result) {
             static_cast<double>(result.counts.extracted)};
 }
 
+/// Of what the pieces of all ranks are together.
+template <class Grid, class Drawn>
+Record::Numbers numbers_of_whole(const Grid& grid, const Drawn& drawn) {
+    if constexpr (requires { grid.shared_nodes(); }) {
+        const JoinedPiece joined = join_pieces(drawn, grid);
+        return {static_cast<double>(joined.vertices), static_cast<double>(joined.simplices),
+                static_cast<double>(joined.components), static_cast<double>(joined.open)};
+    } else {
+        const auto report = surface_report(drawn.surface);
+        return {static_cast<double>(report.vertices), static_cast<double>(report.triangles),
+                static_cast<double>(report.components), static_cast<double>(report.open_edges)};
+    }
+}
+
 /// Surfaces within a number of simplices, those of a series, and counts.
 struct DrawWithin {
     template <class Grid, class Field>
@@ -98,18 +112,7 @@ struct Shade {
         const auto put = [&](const Shading& drawn) {
             record.put(numbers_of_drawn(drawn));
             record.put_surface(drawn.surface);
-            if constexpr (requires { grid.shared_nodes(); }) {
-                const JoinedPiece joined = join_pieces(drawn, grid);
-                record.put(
-                    {static_cast<double>(joined.vertices), static_cast<double>(joined.simplices),
-                     static_cast<double>(joined.components), static_cast<double>(joined.open)});
-            } else {
-                const SurfaceReport report = surface_report(drawn.surface);
-                record.put({static_cast<double>(report.vertices),
-                            static_cast<double>(report.triangles),
-                            static_cast<double>(report.components),
-                            static_cast<double>(report.open_edges)});
-            }
+            record.put(numbers_of_whole(grid, drawn));
         };
         for (const double threshold : {0.0, 0.1, 0.5}) {
             put(shading(grid, field, under(indicator, threshold), {.flatness = threshold + 0.05},
@@ -131,6 +134,26 @@ TEST(DistributedPrograms, ShadingsAndHeightFields) {
     compare_on<UnbalancedQuadtree>("shadings, quadtrees", Shade{}, 8);
     compare_on<BisectionTriangles>("shadings, bisections", Shade{}, 8);
     compare_on<RedGreenTriangles>("shadings, red-green", Shade{}, 8);
+}
+
+/// Bands, whose pieces have vertices of two isovalues between the same nodes.
+struct DrawBands {
+    template <class Grid, class Field>
+    void operator()(const Grid& grid, const Field& field, const Executor& executor,
+                    Record& record) const {
+        const HierarchicalIndicator indicator(grid, field, executor);
+        for (const double threshold : {0.0, 0.2}) {
+            const auto drawn =
+                isoband(grid, field, -0.05, 0.15, under(indicator, threshold), {}, {executor});
+            record.put_surface(drawn.surface);
+            record.put(numbers_of_whole(grid, drawn));
+        }
+    }
+};
+
+TEST(DistributedPrograms, Bands) {
+    compare_on<UnbalancedOctree>("bands, unbalanced octrees", DrawBands{}, 6);
+    compare_on<BisectionTetrahedra>("bands, bisections", DrawBands{}, 4);
 }
 
 /// Lines, each ring from its least point on.
@@ -336,6 +359,24 @@ TEST(DistributedPrograms, RanksEndTogether) {
         const auto most = static_cast<std::uint64_t>(30 + odd(fails));
         isosurface(g, f, 0.1, {.max_triangles = most});
     });
+    const auto not_a_number = [&](bool& fails, double isovalue) {
+        return odd(fails) == 0 ? isovalue : std::nan("");
+    };
+    expect_end_together("band", "rank 2: ", [&](auto& g, auto& f, auto&, bool& fails) {
+        isoband(g, f, not_a_number(fails, -0.1), 0.2, {.max_triangles = 90});
+    });
+    expect_end_together("upper end of a band",
+                        "rank 2: ", [&](auto& g, auto& f, auto& s, bool& fails) {
+                            isoband(g, f, -0.1, not_a_number(fails, 0.2), under(s, 0));
+                        });
+    expect_end_together("lines", "rank 2: the isovalue", [&](auto& g, auto& f, auto&, bool& fails) {
+        isolines(g, f, std::array{0.2, not_a_number(fails, 0.1)}, {.max_triangles = 90});
+    });
+    expect_end_together("lines without end", "rank 2: the isovalue",
+                        [&](auto& g, auto& f, auto& s, bool& fails) {
+                            const double high = std::numeric_limits<double>::infinity();
+                            isolines(g, f, std::array{odd(fails) == 0 ? 0.1 : high}, under(s, 0));
+                        });
     expect_end_together("too few", "even the coarsest surface has more than 1 triangles",
                         [&](auto& g, auto& f, auto&, bool& fails) {
                             fails = false;

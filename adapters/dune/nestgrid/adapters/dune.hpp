@@ -12,14 +12,20 @@
 //   - a node's key is Dune's id of the vertex or, where leaf indices hold on all levels, its index;
 //   - positions are those of the vertices, so that parametrised boundaries are followed.
 // Hanging nodes are derived, except on grids that are known to have none.
+//
+// Of a grid over several processes, each lists the coarse elements of its own and those that it has
+// beside them as overlap or ghosts, which are elsewhere: `presence` tells by Dune's partition
+// types, and distributed.hpp reaches the others. Keys are ids that are the same on all processes.
 // With ids of more than 64 bits keys are hashes of them, with the odds of keys.hpp.
 #pragma once
 
+#include <memory>
 #include <thread>
 
 #include <nestgrid/adapters/dune_alberta.hpp>
 #include <nestgrid/adapters/dune_rules.hpp>
 #include <nestgrid/adapters/dune_ug.hpp>
+#include <nestgrid/adapters/dune_yasp.hpp>
 #include <nestgrid/optional.hpp>
 
 namespace nestgrid {
@@ -56,10 +62,16 @@ public:
     };
 
     /// Walks the whole hierarchy for its rules.
-    /// \throw InvalidInput where the grid is distributed over several processes, has overlap or
-    ///        ghost elements or elements of an unknown shape, or where the children of an element
-    ///        do not tile it
+    /// \throw InvalidInput where the grid is periodic, or shows nothing beside what this process
+    ///        has of it, or has elements of an unknown shape; where the children of an element do
+    ///        not tile it, or lie on several processes
     explicit DuneGrid(const DuneType& grid);
+
+    /// Over several processes it says what is here, and has no dense keys.
+    bool offers(Feature feature) const {
+        if (feature == Feature::presence) return parted_;
+        return feature != Feature::dense_keys || !parted_;
+    }
 
     std::size_t coarse_count() const { return coarse_.size(); }
     CoarseElement<Element> coarse(std::size_t i) const;
@@ -93,6 +105,13 @@ public:
                             });
     }
     bool conforming() const { return Traits::conforming; }
+    Presence presence(const Element& e) const {
+        return e.partitionType() == Dune::InteriorEntity ? Presence::here : Presence::elsewhere;
+    }
+    /// Where a coarse element is in the order of one process.
+    std::uint64_t coarse_place(std::size_t i) const {
+        return Traits::coarse_place(*grid_, coarse_entity(i));
+    }
     /// From the numbers of elements and vertices, of all leaves and on each level: it does not
     /// notice that as many vanished on every level as came there.
     std::uint64_t epoch() const {
@@ -118,7 +137,7 @@ public:
     // What fields need.
     const DuneType& solver() const { return *grid_; }
     Element coarse_entity(std::size_t i) const { return grid_->entity(coarse_[i]); }
-    const RuleTable& rules() const { return rules_.table(); }
+    const RuleTable& rules() const { return rules_->table(); }
 
     /// Calls f(n, child, corner) for every new node n in `which`: a child and its corner there.
     template <class Function>
@@ -133,9 +152,11 @@ private:
     using Opened = typename Context::Opened;
 
     const Opened& open(const Element& e, Opened& opened) const;
+    void require_drawn() const;
     static std::pair<std::size_t, int> child_at_corner(const Rule& rule, int corner);
     std::uint64_t id(const Element& e, std::size_t corner) const {
         const auto i = static_cast<int>(corner);
+        if (parted_) return detail::dune_id(grid_->globalIdSet().subId(e, i, dimension));
         if constexpr (leaf_indices_on_branches) {
             return static_cast<std::uint64_t>(grid_->leafIndexSet().subIndex(e, i, dimension));
         } else {
@@ -144,9 +165,10 @@ private:
     }
 
     const DuneType* grid_;
+    bool parted_;  // over several processes
     std::thread::id thread_;
     std::vector<typename DuneType::template Codim<0>::EntitySeed> coarse_;
-    typename Traits::Rules rules_;
+    std::shared_ptr<typename Traits::Rules> rules_;  // of all copies
 };
 
 template <class DuneType>
@@ -154,31 +176,53 @@ DuneGrid(const DuneType&) -> DuneGrid<DuneType>;
 
 template <class DuneType, class Traits>
 DuneGrid<DuneType, Traits>::DuneGrid(const DuneType& grid)
-    : grid_{&grid}, thread_{std::this_thread::get_id()} {
-    if (grid.comm().size() > 1) {
-        throw InvalidInput("the Dune grid is distributed over " +
-                           std::to_string(grid.comm().size()) +
-                           " processes; only grids on one process can be walked");
-    }
+    : grid_{&grid},
+      parted_{grid.comm().size() > 1},
+      thread_{std::this_thread::get_id()},
+      rules_{std::make_shared<typename Traits::Rules>()} {
+    require_drawn();
     std::vector<Element> children;
     std::vector<PlacedChild> placed;
     const auto add_rule = [&](const Element& e) {
         if (e.isLeaf()) return;
         Traits::children(grid, e, children);
-        rules_.add(e, children, placed);
+        rules_->add(e, children, placed);
     };
     for (const Element& e : elements(grid.levelGridView(0))) {
-        if (e.partitionType() != Dune::InteriorEntity) {
-            throw InvalidInput(
-                "the Dune grid has overlap or ghost elements: it is periodic or part of a "
-                "distributed one");
-        }
         detail::dune_shape(e.type());
         coarse_.push_back(e.seed());
+        if (presence(e) == Presence::elsewhere) {
+            if (!parted_) throw InvalidInput("the Dune grid is periodic");
+            continue;
+        }
         add_rule(e);
-        for (const Element& d : descendantElements(e, grid.maxLevel())) add_rule(d);
+        for (const Element& d : descendantElements(e, grid.maxLevel())) {
+            if (presence(d) == Presence::elsewhere) {
+                throw InvalidInput(
+                    "children of an element of the Dune grid are on several processes: whole "
+                    "trees of elements must be distributed");
+            }
+            add_rule(d);
+        }
     }
     grid.leafIndexSet();
+}
+
+/// \throw InvalidInput, on all processes alike
+template <class DuneType, class Traits>
+void DuneGrid<DuneType, Traits>::require_drawn() const {
+    if (!parted_) return;
+    if constexpr (requires { grid_->isPeriodic(0); }) {
+        for (int d = 0; d < dimension; ++d) {
+            if (grid_->isPeriodic(d)) throw InvalidInput("the Dune grid is periodic");
+        }
+    }
+    const auto coarse = grid_->levelGridView(0);
+    if (coarse.overlapSize(0) == 0 && coarse.ghostSize(0) == 0) {
+        throw InvalidInput(
+            "the Dune grid shows its processes nothing of what lies beside their elements: make "
+            "it with an overlap of 1");
+    }
 }
 
 template <class DuneType, class Traits>
@@ -203,7 +247,7 @@ auto DuneGrid<DuneType, Traits>::open(const Element& e, Opened& opened) const ->
     if (opened.known && opened.element == e) return opened;
     opened.known = false;
     Traits::children(*grid_, e, opened.children);
-    opened.rule = rules_.find(e, opened.children, opened.placed);
+    opened.rule = rules_->find(e, opened.children, opened.placed);
     if (opened.rule == nullptr) {
         throw GridError("the Dune grid was adapted; its adapter must be made anew");
     }

@@ -3,7 +3,7 @@
 //
 // Data on grids of Dune: vectors of values at vertices, and functions on leaves. Both are read
 // where they lie. At the corners of elements that are no leaves, a leaf with the same corner
-// answers.
+// answers. Over several processes all have values at the vertices of their own elements.
 #pragma once
 
 #include <nestgrid/adapters/dune.hpp>
@@ -57,6 +57,7 @@ public:
         check_length();
         const Element e = grid_->coarse_entity(i);
         const std::size_t corners = out.size() / components;
+        if (grid_->presence(e) == Presence::elsewhere) return (NodeMask{1} << corners) - 1;
         for (std::size_t k = 0; k < corners; ++k)
             get(e, static_cast<int>(k), context, &out[k * components]);
         return 0;
@@ -115,6 +116,7 @@ public:
     NodeMask coarse_values(std::size_t i, std::span<double> out, Context& context) const {
         made_for_.require_same(*grid_, "the field");
         const Element e = grid_->coarse_entity(i);
+        if (grid_->presence(e) == Presence::elsewhere) return (NodeMask{1} << out.size()) - 1;
         for (std::size_t k = 0; k < out.size(); ++k)
             out[k] = value(e, static_cast<int>(k), context);
         return 0;

@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Surfaces on grids that Dune distributes over MPI: structured ones, and UG's, which are adapted
+// before they are balanced. The pieces of all ranks, gathered, are the surface of one process. Run
+// under mpirun; prints what it compared with the hash of all on one process, and returns 1 where
+// something differs.
+#include <dune/common/parallel/mpihelper.hh>
+#include <dune/grid/yaspgrid.hh>
+
+#include <nestgrid/adapters/mpi.hpp>
+
+#include "drawn_on_ranks.hpp"
+#include "dune_ug_grids.hpp"
+
+using namespace nestgrid_test;
+
+namespace {
+
+template <int dim>
+using Yasp = Dune::YaspGrid<dim>;
+
+/// A grid of the unit square or cube, twice as fine as its coarse grid in each direction.
+template <int dim>
+struct Structured {
+    Structured(MPI_Comm communicator, int overlap, bool keeps_overlap)
+        : solver(Dune::FieldVector<double, dim>(1), elements_along(), std::bitset<dim>(), overlap,
+                 communicator) {
+        solver.refineOptions(keeps_overlap);
+        solver.globalRefine(dim == 2 ? 2 : 1);
+    }
+    static std::array<int, dim> elements_along() {
+        std::array<int, dim> along;
+        along.fill(dim == 2 ? 18 : 10);
+        along[0] += 2;
+        return along;
+    }
+    Yasp<dim> solver;
+};
+
+template <class Solver>
+std::vector<double> sphere_at_vertices(const Solver& solver, bool noise) {
+    return at_vertices(solver,
+                       [&](const Point& x) { return sphere(x, Solver::dimension == 2, noise); });
+}
+
+/// Of a grid that one process has wholly, even if others take part.
+template <class Solver>
+std::vector<Drawn<Solver::dimension>> draw_alone(const Solver& solver, bool noise) {
+    const DuneGrid grid(solver);
+    const std::vector<double> values = sphere_at_vertices(solver, noise);
+    auto all = draw<Solver::dimension>(grid, DuneVertexField(grid, values));
+    sort(all);
+    return all;
+}
+
+template <class Solver>
+std::vector<Drawn<Solver::dimension>> draw_on_ranks(const Solver& solver, bool noise,
+                                                    Ranks& ranks) {
+    const DuneGrid mine(solver);
+    const Distributed grid(mine, ranks);
+    const std::vector<double> values = sphere_at_vertices(solver, noise);
+    const DistributedField field(grid, DuneVertexField(mine, values));
+    auto all = draw<Solver::dimension>(grid, field);
+    return gathered(std::move(all), ranks);
+}
+
+/// Of functions of leaves. \return whether they are other surfaces than those of their values
+template <class Solver>
+int compare_functions(const Solver& solver, Ranks& ranks) {
+    constexpr int dim = Solver::dimension;
+    const DuneGrid mine(solver);
+    const Distributed grid(mine, ranks);
+    const auto f = [](const auto& leaf, const auto& local) {
+        return sphere(nestgrid::detail::dune_point(leaf.geometry().global(local)), dim == 2, false);
+    };
+    const std::vector<double> values = sphere_at_vertices(solver, false);
+    const auto of_functions = draw<dim>(grid, DistributedField(grid, DuneFunctionField(mine, f)));
+    const auto of_values = draw<dim>(grid, DistributedField(grid, DuneVertexField(mine, values)));
+    return of_functions == of_values ? 0 : 1;
+}
+
+template <class Solver>
+unsigned long long leaves_of(const Solver& solver) {
+    unsigned long long own = 0;
+    for ([[maybe_unused]] const auto& e :
+         elements(solver.leafGridView(), Dune::Partitions::interior)) {
+        ++own;
+    }
+    return solver.comm().sum(own);
+}
+
+template <int dim>
+int compare_structured(Ranks& ranks) {
+    int wrong = 0;
+    for (const int overlap : {1, 2}) {
+        const Structured<dim> parts(MPI_COMM_WORLD, overlap, overlap == 2);
+        const Structured<dim> whole(MPI_COMM_SELF, 1, true);
+        const auto leaves = leaves_of(parts.solver);
+        for (const bool noise : {false, true}) {
+            const auto found = draw_on_ranks(parts.solver, noise, ranks);
+            if (!noise) wrong += compare_functions(parts.solver, ranks);
+            if (ranks.rank() != 0) continue;
+            const auto expected = draw_alone(whole.solver, noise);
+            wrong += count_different("YaspGrid in " + std::to_string(dim) + "-D, overlap " +
+                                         std::to_string(overlap) + (noise ? ", noise" : ""),
+                                     ranks.size(), leaves, found, expected);
+        }
+    }
+    return wrong;
+}
+
+/// Without normals and values at points: once UG has moved elements, it gives the children of
+/// tetrahedra in another order, which decides about their last bits.
+template <int dim>
+std::vector<Drawn<dim>> up_to_order(std::vector<Drawn<dim>> all) {
+    for (Drawn<dim>& drawn : all) {
+        if (drawn.simplices.empty()) drawn.values.clear();
+        for (Simplex<dim>& simplex : drawn.simplices) {
+            for (Corner& corner : simplex) corner[1] = {0, 0, 0};
+        }
+    }
+    sort(all);
+    return all;
+}
+
+/// \param make makes a grid, which one process has until it is balanced
+template <class Make>
+int compare_unstructured(const char* name, const Make& make, Ranks& ranks) {
+    int wrong = 0;
+    for (const bool noise : {false, true}) {
+        const auto solver = make();
+        const auto leaves = leaves_of(*solver);
+        auto expected = draw_alone(*solver, noise);
+        expected = ranks.rank() == 0 ? expected : decltype(expected){};
+        const auto before = draw_on_ranks(*solver, noise, ranks);
+        solver->loadBalance();
+        const auto found = draw_on_ranks(*solver, noise, ranks);
+        if (ranks.rank() != 0) continue;
+        const std::string what = std::string("UG, ") + name + (noise ? ", noise" : "");
+        wrong += count_different(what + ", on one", ranks.size(), leaves, before, expected);
+        wrong +=
+            count_different(what, ranks.size(), leaves, up_to_order(found), up_to_order(expected));
+    }
+    return wrong;
+}
+
+int compare_ug(Ranks& ranks) {
+    const auto closed = [](auto solver, int levels, double width) {
+        refine_at_sphere(*solver, levels, width);
+        return solver;
+    };
+    int wrong = 0;
+    wrong += compare_unstructured(
+        "triangles", [&] { return closed(simplices<2>(4), 4, 0.15); }, ranks);
+    wrong += compare_unstructured(
+        "quadrilaterals, hanging", [] { return hanging_cubes<2>(4, 4, 0.15); }, ranks);
+    wrong += compare_unstructured(
+        "tetrahedra", [&] { return closed(simplices<3>(3), 2, 0.2); }, ranks);
+    wrong += compare_unstructured(
+        "hexahedra, hanging", [] { return hanging_cubes<3>(4, 2, 0.2); }, ranks);
+    wrong += compare_unstructured(
+        "hexahedra and pyramids", [&] { return closed(cubes<3>(4), 2, 0.15); }, ranks);
+    return wrong;
+}
+
+/// Grids and values that are not drawn on ranks, or not without them.
+int refuse(Ranks& ranks) {
+    if (ranks.size() == 1) return 0;
+    Refusals refusals(ranks);
+    const Yasp<2> bare({1, 1}, {20, 20}, std::bitset<2>(), 0);
+    refusals.expect<InvalidInput>("make it with an overlap of 1", [&] { const DuneGrid g(bare); });
+    const Yasp<2> periodic({1, 1}, {20, 20}, std::bitset<2>("01"), 1);
+    refusals.expect<InvalidInput>("the Dune grid is periodic", [&] { const DuneGrid g(periodic); });
+    Structured<2> parts(MPI_COMM_WORLD, 1, true);
+    const DuneGrid mine(parts.solver);
+    std::vector<double> values = sphere_at_vertices(parts.solver, false);
+    const DuneVertexField own(mine, values);
+    refusals.expect<GridError>("are on other processes", [&] { isosurface(mine, own, 0.0); });
+    const Distributed grid(mine, ranks);
+    const DistributedField field(grid, own);
+    for (double& value : values) value += ranks.rank();
+    refusals.expect<InvalidInput>("its field differs from that of rank",
+                                  [&] { const DistributedField other(grid, own); });
+    parts.solver.globalRefine(1);
+    values = sphere_at_vertices(parts.solver, false);
+    refusals.expect<GridError>("the grid has changed",
+                               [&] { const DistributedField stale(grid, own); });
+    return refusals.wrong;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Dune::MPIHelper::instance(argc, argv);
+    MpiRanks ranks(MPI_COMM_WORLD);
+    int wrong = 0;
+    try {
+        wrong = compare_structured<2>(ranks) + compare_structured<3>(ranks) + compare_ug(ranks) +
+                refuse(ranks);
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "rank %d: %s\n", ranks.rank(), e.what());
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+    return status_of_all(ranks, wrong);
+}
