@@ -162,9 +162,9 @@ template <int dim>
 std::string note_on(const LagrangeGrid<dim>& grid) {
     const nestgrid::CurvedCells& curved = grid.curved();
     if (curved.count == 0) return "";
-    return with_number(std::to_string(curved.count) +
-                           " cells are curved, by up to % in units of length",
-                       curved.distance);
+    return with_number(
+        std::to_string(curved.count) + " cells are curved, by up to % in units of length",
+        curved.distance);
 }
 
 /// What a field borrows from.
