@@ -109,6 +109,8 @@ module nestgrid
         type(c_funptr) :: last_error = c_null_funptr
         type(c_funptr) :: hanging_parents = c_null_funptr
         type(c_funptr) :: presence = c_null_funptr
+        type(c_funptr) :: geometry_degree = c_null_funptr
+        type(c_funptr) :: map = c_null_funptr
     end type nestgrid_grid
 
     type, bind(c) :: nestgrid_field

@@ -12,6 +12,7 @@
 
 namespace nestgrid::engine {
 
+/// What LeafRecords makes coefficients of.
 class LeafFunction {
 public:
     virtual ~LeafFunction() = default;

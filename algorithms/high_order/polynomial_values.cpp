@@ -70,7 +70,7 @@ public:
     ProbeResult probed;
 
 private:
-    /// A point of an element below a leaf in the reference element of that.
+    /// A point of an element below a leaf, in the reference element of the leaf.
     static Point in_leaf(const ShapeParts& leaf, const VirtualElement& e, const Point& reference) {
         const ShapeParts* shape = &leaf;
         std::array<Place, max_corners> at{};

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Arithmetic that never rounds down, for several numbers at once. Each result has the bits of the
-// function of the same name in round_up.hpp.
+// function of the same name in detail/round_up.hpp.
 #pragma once
 
 #include <nestgrid/algorithms/detail/round_up.hpp>

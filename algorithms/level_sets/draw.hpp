@@ -66,9 +66,9 @@ std::optional<std::uint64_t> count_simplices(const Levels<Real>& levels, const C
                                              const IsosurfaceOptions& options,
                                              const Executor& executor);
 
-/// The least threshold at which all levels keep within a number of triangles. Of slices, they are
-/// counted before vertices are merged at nodes: there are no more.
-/// \param bounds which know the range of the data: from there it is searched
+/// The least threshold at which all levels keep within a number of triangles. Those of slices are
+/// counted before vertices are merged at nodes: a slice has no more.
+/// \param bounds with the range of the data, at which the search begins
 /// \throw InvalidInput where even the coarsest surface has more
 template <int dimension, class Real>
 TriangleBudget find_threshold(const Levels<Real>& levels, const CriterionAt& criterion_at,

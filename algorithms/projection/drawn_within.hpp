@@ -62,7 +62,7 @@ auto with_field(const Prerolls& prerolls, const Work& work, int dimension,
 }
 
 /// Asks a field of higher degree within the error that the projection asks for; nothing where it
-/// asks for none, or where all degrees are 1.
+/// asks for none, or where all leaves are straight and of degree 1.
 /// \param ask called with the VirtualRefinement
 template <class Ask>
 auto from_polynomials(const Prerolls& prerolls, const Projection& projection, const Work& work,
@@ -94,7 +94,7 @@ TriangleBudget find_tolerance(const HighOrder& data, const Projection& projectio
 
 /// Draws a field of higher degree, if it has the dimension: within the error that the projection
 /// asks for, or the least one with its number of triangles. Nothing where it asks for neither, or
-/// where all degrees are 1.
+/// where all leaves are straight and of degree 1.
 template <class Result, class Draw>
 std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
                                               const Projection& projection, const Work& work,

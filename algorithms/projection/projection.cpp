@@ -77,7 +77,8 @@ void Projection::require_error_alone(int degree) const {
         what = "no threshold of nodes";
     }
     if (what.empty()) return;
-    throw InvalidInput("the field has degree " + std::to_string(degree) +
+    throw InvalidInput((degree > 1 ? "the field has degree " + std::to_string(degree)
+                                   : std::string("the grid has curved cells")) +
                        " and is drawn within an error, by " + what + " yet");
 }
 

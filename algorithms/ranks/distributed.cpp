@@ -75,7 +75,8 @@ std::vector<SharedNodes::Candidate> nodes_of(const Hierarchy<float>& grid) {
 }
 
 /// A corner of the first coarse element of all ranks. Collective.
-/// \param first, corner of the elements of this rank
+/// \param first the least place of a coarse element of this rank
+/// \param corner of that element
 Point corner_of_all(Ranks& ranks, std::uint64_t first, const Point& corner) {
     std::uint64_t least = first;
     ranks.reduce(std::span(&least, 1), Ranks::Reduction::min);

@@ -31,7 +31,8 @@ public:
         std::uint64_t place;  ///< a hash of where it lies, the same on all ranks
     };
 
-    /// \param coarse_places of coarse elements, where ranks list others; else none
+    /// \param coarse_places the place of each coarse element among those of all ranks; empty where
+    ///        all ranks list the same ones
     SharedNodes(Ranks& ranks, std::uint64_t epoch, std::vector<std::uint64_t> coarse_places)
         : ranks_{&ranks}, epoch_{epoch}, coarse_places_{std::move(coarse_places)} {}
 

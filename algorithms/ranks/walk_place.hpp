@@ -14,7 +14,8 @@ namespace nestgrid::engine {
 /// The place of the coarse element and the way down from it: earlier elements have lesser strings.
 using WalkPlace = std::string;
 
-/// Of a coarse element at such a place.
+/// The place of a coarse element.
+/// \param coarse its number among those of all ranks
 inline WalkPlace place_in_walk(std::uint64_t coarse) {
     WalkPlace place;
     for (unsigned shift = 64; shift > 0; shift -= 8) {

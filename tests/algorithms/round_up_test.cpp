@@ -76,20 +76,18 @@ TEST(RoundUp, GivesTheSameOfSeveralAtOnce) {
             b[i] = (random() & 7U) == 0 ? a[i] : number(random);
         }
         const auto distances =
-            detail::distance_above(Floats::load(a.data()), Floats::load(b.data())).numbers();
-        for (std::size_t i = 0; i < 4; ++i)
-            EXPECT_EQ(distances[i], detail::distance_above(a[i], b[i]));
+            distance_above(Floats::load(a.data()), Floats::load(b.data())).numbers();
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(distances[i], distance_above(a[i], b[i]));
         for (std::size_t i = 0; i < 4; ++i) {
             a[i] = std::abs(a[i]);
             b[i] = std::abs(b[i]);
         }
         if (round == 0) a[1] = std::numeric_limits<float>::infinity();
         if (round == 0) a[2] = b[2] = std::numeric_limits<float>::max();
-        const auto sums =
-            detail::sum_above(Floats::load(a.data()), Floats::load(b.data())).numbers();
-        const auto coarse = detail::bfloat16_above(Floats::load(a.data())).numbers();
+        const auto sums = sum_above(Floats::load(a.data()), Floats::load(b.data())).numbers();
+        const auto coarse = bfloat16_above(Floats::load(a.data())).numbers();
         for (std::size_t i = 0; i < 4; ++i) {
-            EXPECT_EQ(sums[i], detail::sum_above(a[i], b[i]));
+            EXPECT_EQ(sums[i], sum_above(a[i], b[i]));
             EXPECT_EQ(coarse[i], std::uint32_t{detail::bfloat16_above(a[i])} << 16U);
         }
     }

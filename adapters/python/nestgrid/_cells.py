@@ -30,8 +30,8 @@ class Cells(Field):
     unit          of length, such as "mm"
 
     What is drawn of degrees above 1 is within an error of the polynomials themselves: that of
-    error=, or a thousandth of their range. Cells are straight: a warning tells how far curved ones
-    are off.
+    error=, or a thousandth of their range. Curved cells are drawn where they are, within the same
+    share of the domain as the error is of the range.
 
     Raises InvalidInput for cells that are not drawn, with the first of them, and where a face of a
     cell is divided on its other side.

@@ -43,8 +43,9 @@ class LoadedFrames(Frames):
 
 
 def hierarchy(path: str, array: str) -> Any:
+    loaded = _nestgrid.load(path, array)
     path = os.path.abspath(path)
-    return _loaded(_nestgrid.load(path, array), (hierarchy, (path, array)), [path])
+    return _loaded(loaded, (hierarchy, (path, array)), [path])
 
 
 def plotfiles(paths: list[str], array: str, rule: str, times: list[float]) -> Any:

@@ -33,10 +33,6 @@ class OctreeSource(Source):
 class CellSource(Source):
     @property
     def degree(self) -> int: ...
-    @property
-    def curved_cells(self) -> int: ...
-    @property
-    def curved_distance(self) -> float: ...
 
 class Frames:
     def __init__(

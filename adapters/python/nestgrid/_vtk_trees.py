@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The leaves of VTK's hyper tree grids: for load()'s reader, a program of its own, and for ParaView."""
+"""The leaves of VTK's hyper tree grids: for load()'s reader, a program, and for ParaView."""
 
 from __future__ import annotations
 
@@ -52,6 +52,8 @@ def trees_of(grid: Any) -> Trees:
             raise ValueError("its mask or its ghost array has fewer entries than cells")
         masked |= each[index] != 0
     axes = (grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates())
+    if any(axis is None for axis in axes[:dimension]):
+        raise ValueError("its trees have no coordinates")
     coordinates = [vtk_to_numpy(axis).astype(float) for axis in axes[:dimension]]
     return Trees(leaves, index, masked, max_level, coordinates)
 

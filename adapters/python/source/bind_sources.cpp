@@ -274,9 +274,7 @@ void bind_sources(py::module_& m) {
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),
           py::arg("max_level"), py::arg("coordinates"));
     py::class_<CellSource, Source, std::shared_ptr<CellSource>>(m, "CellSource")
-        .def_property_readonly("degree", &CellSource::degree)
-        .def_property_readonly("curved_cells", &CellSource::curved_cells)
-        .def_property_readonly("curved_distance", &CellSource::curved_distance);
+        .def_property_readonly("degree", &CellSource::degree);
     m.def("cells", &cell_source_of, py::arg("points"), py::arg("types"), py::arg("offsets"),
           py::arg("connectivity"), py::arg("values"), py::arg("degrees"));
     py::class_<Frames, std::shared_ptr<Frames>>(m, "Frames")

@@ -15,21 +15,16 @@ namespace {
 /// Their range is that of the values at points.
 class Cells final : public CellSource {
 public:
-    Cells(FieldOnGrid field, std::span<const double> values, int degree, CurvedCells curved)
-        : CellSource(std::make_shared<Prerolls>(std::move(field))),
-          degree_{degree},
-          curved_{curved} {
+    Cells(FieldOnGrid field, std::span<const double> values, int degree)
+        : CellSource(std::make_shared<Prerolls>(std::move(field))), degree_{degree} {
         const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
         range_ = {*least, *greatest};
     }
     std::array<double, 2> range(const Call&) const override { return range_; }
     int degree() const override { return degree_; }
-    std::size_t curved_cells() const override { return curved_.count; }
-    double curved_distance() const override { return curved_.distance; }
 
 private:
     int degree_;
-    CurvedCells curved_;
     std::array<double, 2> range_{};
 };
 
@@ -40,7 +35,7 @@ std::shared_ptr<CellSource> cells_of(const CellArrays& cells, std::span<const do
     const auto values = std::make_shared<const std::vector<double>>(given.begin(), given.end());
     const auto made = [&](auto field) {
         return std::make_shared<Cells>(shared_field(grid, std::move(field), values), given,
-                                       grid->greatest_degree(), grid->curved());
+                                       grid->greatest_degree());
     };
     if (grid->greatest_degree() > 1) return made(LagrangeField<dim>(*grid, *values));
     return made(LagrangeCornerField<dim>(*grid, *values));

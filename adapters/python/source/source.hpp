@@ -116,9 +116,7 @@ Frames make_blocks(const std::vector<BoxArrays>& frames, std::vector<double> tim
 class CellSource : public Source {
 public:
     using Source::Source;
-    virtual int degree() const = 0;                ///< the greatest of a cell
-    virtual std::size_t curved_cells() const = 0;  ///< by CurvedCells
-    virtual double curved_distance() const = 0;    ///< as CurvedCells
+    virtual int degree() const = 0;  ///< the greatest of a cell
 };
 /// \param values one for each point, copied
 /// \throw InvalidInput as LagrangeGrid, and where arrays do not fit each other or a value is not

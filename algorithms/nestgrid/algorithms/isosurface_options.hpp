@@ -96,8 +96,8 @@ struct Isosurface : ErrorBounds {
     TraversalCounts counts;
     /// Every vertex is at most this far from the true position of its point, in units of length, on
     /// a grid with true positions (curved elements). 0 where options.position_bounds is null;
-    /// infinity under a criterion that is not saturated. Of curved leaves (high_order.hpp) it is
-    /// known without these, and that of every point of every triangle.
+    /// infinity under a criterion that is not saturated. On curved leaves (high_order.hpp) it needs
+    /// no position_bounds and holds at every point of every triangle.
     double position_bound = 0;
     /// The error there and back that cut_deviations() promise (cut_indicator.hpp), where a
     /// threshold on them was the criterion: |U - C| on the triangles, |P_S U - C| on the whole

@@ -101,7 +101,7 @@ struct Projection {
     bool asks_for_error() const {
         return indicator == "error" || indicator == "deviation" || indicator == "cut";
     }
-    /// \param degree of the field, above 1
+    /// \param degree of the field; 1 where its grid is curved
     ///
     /// \throw InvalidInput where the field is asked for in another way than by an error alone
     void require_error_alone(int degree) const;

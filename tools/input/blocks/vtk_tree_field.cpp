@@ -76,7 +76,7 @@ private:
     std::size_t next_ = 0;
 };
 
-/// The number of a cell, by that of the cell.
+/// The value of a leaf, by the number of its cell.
 template <class Grid>
 struct NumberOfTree {
     const Grid* grid;

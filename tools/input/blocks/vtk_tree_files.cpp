@@ -50,6 +50,10 @@ BoxNumbers numbers_of(const TreeBoxes& trees, vtkDataArray& data, int component)
 
 BlockFile open_htg(const fs::path& path) {
     const auto grid = read_htg(path);
+    if (!head_of(*grid).holds_boxes) {
+        throw InvalidInput(
+            "its trees are divided by three or have several sizes, unlike those of the first file");
+    }
     const auto trees = std::make_shared<const TreeBoxes>(tree_boxes(grid));
     BlockFile file;
     file.dimension = trees->dimension;

@@ -61,7 +61,7 @@ private:
     vtkUnsignedCharArray* ghosts_;
 };
 
-/// The numbers of a field for all cells; those of cells that have a value only.
+/// One component of a field, for all cells in the order of the records.
 std::vector<double> numbers_of(const TreeRecords& records, vtkDataArray& data, int component) {
     if (data.GetNumberOfTuples() <= *std::ranges::max_element(records.numbers)) {
         throw InvalidInput("the field '" + std::string(data.GetName()) +
@@ -83,27 +83,6 @@ std::array<double, 2> range_in_leaves(const TreeRecords& records,
         range[1] = values[i] > range[1] ? values[i] : range[1];
     }
     return range;
-}
-
-TreeHead head_of(vtkHyperTreeGrid& grid) {
-    const unsigned* const points = grid.GetDimensions();
-    TreeHead head{{points[0], points[1], points[2]},
-                  grid.GetDimension(),
-                  static_cast<unsigned>(grid.GetBranchFactor()),
-                  grid.GetBranchFactor() == 2};
-    if (head.dimension != (points[2] == 1 ? 2U : 3U) || points[0] < 2 || points[1] < 2) {
-        throw InvalidInput("its trees have dimension " + std::to_string(head.dimension) +
-                           ": trees in space or in a plane of constant z are read");
-    }
-    vtkDataArray* const along[]{grid.GetXCoordinates(), grid.GetYCoordinates(),
-                                grid.GetZCoordinates()};
-    for (std::size_t d = 0; d < 3; ++d) {
-        if (along[d] != nullptr && along[d]->GetNumberOfTuples() == vtkIdType{points[d]}) continue;
-        throw InvalidInput("its trees have " + std::to_string(points[d]) + " points in direction " +
-                           std::to_string(d) + ", but another number of coordinates");
-    }
-    head.holds_boxes = head.holds_boxes && trees_have_one_size(grid);
-    return head;
 }
 
 void put_head(vtkHyperTreeGrid& grid, Parcel& out) {
@@ -175,6 +154,27 @@ void count_levels(std::span<const std::uint8_t> cells, std::size_t& next, std::s
 }
 
 }  // namespace
+
+TreeHead head_of(vtkHyperTreeGrid& grid) {
+    const unsigned* const points = grid.GetDimensions();
+    TreeHead head{{points[0], points[1], points[2]},
+                  grid.GetDimension(),
+                  static_cast<unsigned>(grid.GetBranchFactor()),
+                  grid.GetBranchFactor() == 2};
+    if (head.dimension != (points[2] == 1 ? 2U : 3U) || points[0] < 2 || points[1] < 2) {
+        throw InvalidInput("its trees have dimension " + std::to_string(head.dimension) +
+                           ": trees in space or in a plane of constant z are read");
+    }
+    vtkDataArray* const along[]{grid.GetXCoordinates(), grid.GetYCoordinates(),
+                                grid.GetZCoordinates()};
+    for (std::size_t d = 0; d < 3; ++d) {
+        if (along[d] != nullptr && along[d]->GetNumberOfTuples() == vtkIdType{points[d]}) continue;
+        throw InvalidInput("its trees have " + std::to_string(points[d]) + " points in direction " +
+                           std::to_string(d) + ", but another number of coordinates");
+    }
+    head.holds_boxes = head.holds_boxes && trees_have_one_size(grid);
+    return head;
+}
 
 TreeHead tree_head(const fs::path& path, double seconds) {
     const auto parcel = run(path, seconds, [&](Parcel& out) { put_head(*read_htg(path), out); });

@@ -40,6 +40,8 @@ struct TreeHead {
     bool holds_boxes;  ///< whether tree_boxes() makes boxes of it
 };
 
+/// \throw nestgrid::InvalidInput for trees that are not read
+TreeHead head_of(vtkHyperTreeGrid& grid);
 /// \throw nestgrid::IoError, nestgrid::InvalidInput as run_apart()
 TreeHead tree_head(const std::filesystem::path& path, double seconds);
 

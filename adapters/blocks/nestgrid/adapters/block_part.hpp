@@ -14,7 +14,12 @@
 // one rank that has them all: the others fetch the value.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <nestgrid/adapters/block_grid.hpp>
+#include <nestgrid/error.hpp>
 
 namespace nestgrid {
 
@@ -28,10 +33,10 @@ public:
     using Element = typename BlockGrid<dim>::Element;
 
     /// \param blocks of all ranks
-    /// \param owners the rank of each box, the same on all ranks
+    /// \param owners the rank of each box, less than there are ranks; the same on all of them
     /// \param rank this one
     ///
-    /// \throw InvalidInput as BlockGrid, and where there is not one owner for each box
+    /// \throw InvalidInput as BlockGrid, and where there is not one owner >= 0 for each box
     BlockPart(const Blocks<dim>& blocks, BlockOwners owners, int rank)
         : BlockGrid<dim>(blocks), owners_{std::move(owners)}, rank_{rank} {
         bool fits = owners_.size() == blocks.levels.size();
@@ -42,6 +47,9 @@ public:
         epoch_ = BlockGrid<dim>::epoch();
         for (const std::vector<int>& level : owners_) {
             for (const int owner : level) {
+                if (owner < 0) {
+                    throw InvalidInput("a box has the owner " + std::to_string(owner));
+                }
                 epoch_ = detail::mix64(epoch_ + static_cast<std::uint64_t>(std::int64_t{owner}));
             }
         }
@@ -64,7 +72,7 @@ public:
             owners_[static_cast<std::size_t>(first.level)][static_cast<std::size_t>(first.box)];
         return owner == rank_ ? Presence::partly_first : Presence::partly;
     }
-    /// Of the boxes and their owners.
+    /// Changes with the boxes and with their owners.
     std::uint64_t epoch() const { return epoch_; }
 
 private:

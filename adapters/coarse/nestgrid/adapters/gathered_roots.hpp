@@ -19,8 +19,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <limits>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 #include <nestgrid/detail/operations.hpp>
@@ -37,6 +42,10 @@ class GatheredRoots {
     static constexpr auto size_ = static_cast<std::size_t>(Grid::dimension);
     static constexpr std::size_t corners_ = std::size_t{1} << size_;
     static constexpr bool has_keys_ = may_offer<Grid>(Feature::own_keys);
+    static constexpr bool offers_any(std::initializer_list<Feature> features) {
+        return std::any_of(features.begin(), features.end(),
+                           [](Feature each) { return may_offer<Grid>(each); });
+    }
 
 public:
     static constexpr int dimension = Grid::dimension;
@@ -46,13 +55,9 @@ public:
     static constexpr Shape only_shape = Grid::only_shape;
     static_assert(only_shape == (dimension == 2 ? Shape::quadrilateral : Shape::hexahedron));
     static_assert(std::is_same_v<Context<Grid>, NoContext>);
-    static constexpr bool offers_any(std::initializer_list<Feature> features) {
-        return std::any_of(features.begin(), features.end(),
-                           [](Feature each) { return may_offer<Grid>(each); });
-    }
     static_assert(!offers_any({Feature::presence, Feature::new_positions, Feature::own_positions,
                                Feature::masked, Feature::outside, Feature::boundary_faces,
-                               Feature::hanging_parents}));
+                               Feature::hanging_parents, Feature::geometry_degree}));
 
     using Inner = ElementOf<Grid>;
     using Place = std::array<std::int32_t, size_>;
@@ -96,7 +101,7 @@ public:
     }
     std::uint64_t epoch() const { return nestgrid::epoch(*grid_); }
 
-    // What fields need.
+    // What GatheredField needs.
     const Grid& grid() const { return *grid_; }
     /// A node of the lattice, as a corner of a coarse element of the grid.
     struct Corner {
@@ -130,7 +135,7 @@ private:
     bool read_place(const CoarseElement<Inner>& coarse, const CoarseElement<Inner>& first,
                     Place& place) const;
 
-    /// Of a place among cubes.
+    /// The number of a cube at a place.
     std::size_t number_of(const Place& place, int above) const {
         std::size_t number = 0;
         for (std::size_t d = size_; d-- > 0;) {
@@ -179,12 +184,17 @@ template <class Grid>
 GatheredRoots(const Grid&) -> GatheredRoots<Grid>;
 
 /// A field on the grid, as one on the gathered grid.
-/// \tparam Field without components
+/// \tparam Field without components, gradients and degrees
 template <class Grid, class Field>
 class GatheredField {
 public:
     using value_type = typename Field::value_type;
     using Element = typename GatheredRoots<Grid>::Element;
+    static_assert(
+        !requires(const Field& f, const ElementOf<Grid>& e, std::span<Point> out) {
+            f.corner_gradients(e, out);
+        } &&
+        !requires(const Field& f, const ElementOf<Grid>& e) { f.degree(e); });
 
     /// Both are borrowed.
     GatheredField(const GatheredRoots<Grid>& grid, const Field& field)

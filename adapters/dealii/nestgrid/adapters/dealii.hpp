@@ -53,8 +53,7 @@ public:
     static constexpr int max_children = 1 << dim;
 
     /// \param mapping gives the positions of vertices, and those inside cells if it is a MappingQ
-    /// or
-    ///        a MappingFE; null: where the triangulation has them
+    ///        or a MappingFE; null: where the triangulation has them
     ///
     /// \throw InvalidInput for a triangulation that is refined in one direction only, or over
     ///        several processes fully distributed or with a mapping, on all processes alike

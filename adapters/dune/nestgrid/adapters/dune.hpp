@@ -10,16 +10,17 @@
 //     corners keep their numbers, since Dune numbers them as nestgrid does;
 //   - the rule of an element is found from where its children lie in it (geometryInFather);
 //   - a node's key is Dune's id of the vertex or, where leaf indices hold on all levels, its index;
+//     of ids of more than 64 bits it is a hash, with the odds of keys.hpp;
 //   - positions are those of the vertices, so that parametrised boundaries are followed.
 // Hanging nodes are derived, except on grids that are known to have none.
 //
-// Of a grid over several processes, each lists the coarse elements of its own and those that it has
-// beside them as overlap or ghosts, which are elsewhere: `presence` tells by Dune's partition
-// types, and distributed.hpp reaches the others. Keys are ids that are the same on all processes.
-// With ids of more than 64 bits keys are hashes of them, with the odds of keys.hpp.
+// Each of several processes lists its own coarse elements and those that it has beside them as
+// overlap or ghosts, which are elsewhere: `presence` tells by Dune's partition types, and
+// distributed.hpp reaches the others. Keys are ids that are the same on all processes.
 #pragma once
 
 #include <memory>
+#include <string>
 #include <thread>
 
 #include <nestgrid/adapters/dune_alberta.hpp>
@@ -188,12 +189,12 @@ DuneGrid<DuneType, Traits>::DuneGrid(const DuneType& grid)
         Traits::children(grid, e, children);
         rules_->add(e, children, placed);
     };
-    for (const Element& e : elements(grid.levelGridView(0))) {
+    const auto take = [&](const Element& e) {
         detail::dune_shape(e.type());
         coarse_.push_back(e.seed());
         if (presence(e) == Presence::elsewhere) {
             if (!parted_) throw InvalidInput("the Dune grid is periodic");
-            continue;
+            return;
         }
         add_rule(e);
         for (const Element& d : descendantElements(e, grid.maxLevel())) {
@@ -204,6 +205,17 @@ DuneGrid<DuneType, Traits>::DuneGrid(const DuneType& grid)
             }
             add_rule(d);
         }
+    };
+    std::string wrong;
+    try {
+        for (const Element& e : elements(grid.levelGridView(0))) take(e);
+    } catch (const InvalidInput& error) {
+        if (!parted_) throw;
+        wrong = error.what();
+    }
+    if (parted_ && grid.comm().max(wrong.empty() ? 0 : 1) != 0) {
+        throw InvalidInput(wrong.empty() ? "another process cannot walk its part of the Dune grid"
+                                         : wrong);
     }
     grid.leafIndexSet();
 }

@@ -111,8 +111,8 @@ struct DuneDefaults {
         out.clear();
         for (const Element& child : descendantElements(e, e.level() + 1)) out.push_back(child);
     }
-    /// Of a grid over several processes: a number that is less where an element of the coarse grid
-    /// comes earlier on one process. Here by ids, which are given in that order.
+    /// A number that is the less the earlier one process would list an element of the coarse grid;
+    /// for grids over several processes. Here by ids, which are given in that order.
     static std::uint64_t coarse_place(const DuneType& grid, const Element& e) {
         return detail::dune_id(grid.globalIdSet().id(e));
     }

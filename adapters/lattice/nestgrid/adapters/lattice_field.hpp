@@ -85,7 +85,8 @@ private:
     NESTGRID_INLINE value_type at(typename Grid::Place p) const {
         return static_cast<value_type>(samples_[grid_->sample(p)]);
     }
-    /// Of a node with neighbours along all axes: the gradient, unless a sample is not a number.
+    /// Puts the gradient at a node that has neighbours along all axes. Returns false where a sample
+    /// is not a number.
     NESTGRID_INLINE bool inner_gradient(typename Grid::Place p, Point& gradient) const {
         constexpr auto dimension = static_cast<std::size_t>(Grid::dimension);
         for (std::size_t d = 0; d < dimension; ++d) {

@@ -139,7 +139,7 @@ public:
 private:
     using Place = std::array<std::uint64_t, static_cast<std::size_t>(dim)>;  // in finest cells
 
-    /// Of the first corner of an element, where its first leaf lies.
+    /// The place of the first corner of an element, which is that of its first leaf.
     Place place_of(std::size_t tree, const Element& e) const {
         const LeafType& leaf = trees_[tree][e.first - first_[tree]];
         Place place;
