@@ -65,6 +65,10 @@ for file in thirds.htg uneven.htg; do
 done
 refused 1 "'uneven.htg' has another grid than the first input" \
     isosurface thirds.htg uneven.htg --field dist --value 0 --time 0.5
+for file in thirds.htg uneven.htg; do
+    refused 1 "its trees are divided by three or have several sizes, unlike those of the first file" \
+        isosurface trees.htg "$file" --field dist --value 0 --time 0.5
+done
 
 # Between the times of two files the surface moves; at one of them it is that of the file.
 for pair in run_hdf5_plt_cnt_0000 enzo/data0000.hierarchy chombo.hdf5 athena.athdf; do
