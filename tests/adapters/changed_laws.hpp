@@ -12,6 +12,7 @@
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/collapse.hpp>
+#include <nestgrid/algorithms/count_triangles.hpp>
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/algorithms/discontinuous.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
