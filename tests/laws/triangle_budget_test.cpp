@@ -48,6 +48,7 @@ void expect_kept(const Draw& draw, const Find& find) {
     const std::uint64_t coarsest = draw(1e38);
     for (const std::uint64_t budget : {std::max<std::uint64_t>(coarsest, 1) - 1, coarsest,
                                        (3 * coarsest + finest) / 4, finest, 2 * finest + 1}) {
+        if (budget == 0) continue;  // a projection that asks for no number
         SCOPED_TRACE(std::to_string(budget) + " of " + std::to_string(finest));
         TriangleBudget best;
         try {
