@@ -246,6 +246,18 @@ std::shared_ptr<const Parcel> run_apart(const std::string& file, double seconds,
     return parcel;
 }
 
+std::shared_ptr<const Parcel> read_file_apart(const std::filesystem::path& path, double seconds,
+                                              const std::function<void(Parcel&)>& work) {
+    const std::string quoted = "'" + path.string() + "'";
+    return run_apart(quoted, seconds, [&](Parcel& out) {
+        try {
+            work(out);
+        } catch (const nestgrid::InvalidInput& error) {
+            throw nestgrid::InvalidInput(quoted + ": " + error.what());
+        }
+    });
+}
+
 std::uintmax_t bytes_to_read(const std::filesystem::path& path, const Format& format) {
     std::error_code none;
     std::filesystem::path folder = path;

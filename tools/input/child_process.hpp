@@ -80,3 +80,6 @@ constexpr double reading_time(std::uintmax_t bytes) {
 ///        sentence on how the child died
 std::shared_ptr<const Parcel> run_apart(const std::string& file, double seconds,
                                         const std::function<void(Parcel&)>& work);
+/// The same for work that reads a file; what is wrong with its content is said behind its name.
+std::shared_ptr<const Parcel> read_file_apart(const std::filesystem::path& path, double seconds,
+                                              const std::function<void(Parcel&)>& work);

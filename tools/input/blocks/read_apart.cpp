@@ -175,25 +175,13 @@ BoxNumbers numbers_in(std::shared_ptr<const Parcel> parcel, const BlockFile& fil
     return numbers;
 }
 
-/// Sentences about the content of a file begin with its name.
-template <class Work>
-std::shared_ptr<const Parcel> run(const fs::path& path, double seconds, const Work& work) {
-    const std::string quoted = "'" + path.string() + "'";
-    return run_apart(quoted, seconds, [&](Parcel& out) {
-        try {
-            work(out);
-        } catch (const InvalidInput& error) {
-            throw InvalidInput(quoted + ": " + error.what());
-        }
-    });
-}
-
 }  // namespace
 
 BlockFile open_apart(const fs::path& path, double seconds, OpenBlocks open) {
-    BlockFile file = file_in(*run(path, seconds, [&](Parcel& out) { put(open(path), out); }));
+    BlockFile file =
+        file_in(*read_file_apart(path, seconds, [&](Parcel& out) { put(open(path), out); }));
     file.numbers = [path, seconds, open, head = file](std::size_t field, int component) {
-        auto parcel = run(path, seconds, [&](Parcel& out) {
+        auto parcel = read_file_apart(path, seconds, [&](Parcel& out) {
             const BlockFile read = open(path);
             put(read.numbers(field, component), read, out);
         });

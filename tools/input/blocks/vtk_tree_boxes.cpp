@@ -102,10 +102,6 @@ bool is_even(vtkDataArray& along) {
     return true;
 }
 
-std::array<vtkDataArray*, 3> coordinates_of(vtkHyperTreeGrid& grid) {
-    return {grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates()};
-}
-
 void place_trees(TreeBoxes& out) {
     for (std::size_t d = 0; d < static_cast<std::size_t>(out.dimension); ++d) {
         vtkDataArray& along = *coordinates_of(*out.grid)[d];
@@ -118,6 +114,19 @@ void place_trees(TreeBoxes& out) {
 
 }  // namespace
 
+std::array<vtkDataArray*, 3> coordinates_of(vtkHyperTreeGrid& grid) {
+    return {grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates()};
+}
+
+void require_masks(vtkHyperTreeGrid& grid) {
+    const vtkIdType cells = grid.GetGlobalNodeIndexMax() + 1;
+    const vtkUnsignedCharArray* const ghosts = grid.GetGhostCells();
+    if ((grid.HasMask() && grid.GetMask()->GetNumberOfValues() < cells) ||
+        (ghosts != nullptr && ghosts->GetNumberOfValues() < cells)) {
+        throw InvalidInput("its mask or its ghost array has fewer entries than cells");
+    }
+}
+
 bool trees_have_one_size(vtkHyperTreeGrid& grid) {
     const auto along = coordinates_of(grid);
     return std::ranges::all_of(
@@ -128,12 +137,7 @@ TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid) {
     const unsigned* const points = grid->GetDimensions();
     TreeBoxes out{grid, points[2] == 1 ? 2 : 3, {}, {}};
     place_trees(out);
-    const vtkIdType cells = grid->GetGlobalNodeIndexMax() + 1;
-    const vtkUnsignedCharArray* const ghosts = grid->GetGhostCells();
-    if ((grid->HasMask() && grid->GetMask()->GetNumberOfValues() < cells) ||
-        (ghosts != nullptr && ghosts->GetNumberOfValues() < cells)) {
-        throw InvalidInput("its mask or its ghost array has fewer entries than cells");
-    }
+    require_masks(*grid);
     const int deep = out.dimension == 2 ? 1 : static_cast<int>(points[2]) - 1;
     const Place last{static_cast<int>(points[0]) - 2, static_cast<int>(points[1]) - 2, deep - 1};
     out.blocks.levels.push_back({{{{0, 0, 0}, last}}, {}});

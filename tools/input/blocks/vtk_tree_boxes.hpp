@@ -5,6 +5,9 @@
 // tree that are divided everywhere alike are boxes of finer levels.
 #pragma once
 
+#include <array>
+
+#include <vtkDataArray.h>
 #include <vtkHyperTreeGrid.h>
 #include <vtkSmartPointer.h>
 
@@ -19,6 +22,10 @@ struct TreeBoxes {
     std::vector<std::vector<std::vector<vtkIdType>>> cells;  // by level and box, x fastest
 };
 
+/// The coordinates of the trees along the three directions; null where there are none.
+std::array<vtkDataArray*, 3> coordinates_of(vtkHyperTreeGrid& grid);
+/// \throw nestgrid::InvalidInput where its mask or its ghost array is too short
+void require_masks(vtkHyperTreeGrid& grid);
 /// Whether all trees are as long in each direction.
 bool trees_have_one_size(vtkHyperTreeGrid& grid);
 

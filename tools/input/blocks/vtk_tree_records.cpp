@@ -28,11 +28,7 @@ struct TreeRecords {
 
     explicit TreeRecords(vtkHyperTreeGrid& grid) : ghosts_{grid.GetGhostCells()} {
         if (grid.HasMask()) mask_ = grid.GetMask();
-        const vtkIdType count = grid.GetGlobalNodeIndexMax() + 1;
-        if ((mask_ != nullptr && mask_->GetNumberOfValues() < count) ||
-            (ghosts_ != nullptr && ghosts_->GetNumberOfValues() < count)) {
-            throw InvalidInput("its mask or its ghost array has fewer entries than cells");
-        }
+        require_masks(grid);
         for (vtkIdType t = 0; t < grid.GetMaxNumberOfTrees(); ++t) {
             vtkHyperTree* const tree = grid.GetTree(t);
             if (tree == nullptr) continue;
@@ -95,8 +91,7 @@ void put_trees(const fs::path& path, const Input* input, Parcel& out) {
     const auto grid = read_htg(path);
     put_head(*grid, out);
     std::vector<double> coordinates;
-    for (vtkDataArray* const each :
-         {grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates()}) {
+    for (vtkDataArray* const each : coordinates_of(*grid)) {
         for (vtkIdType i = 0; i < each->GetNumberOfTuples(); ++i) {
             coordinates.push_back(each->GetTuple1(i));
         }
@@ -130,18 +125,6 @@ void put_trees(const fs::path& path, const Input* input, Parcel& out) {
     out.put(std::span<const char>(names));
 }
 
-/// Sentences about the content of a file begin with its name.
-std::shared_ptr<const Parcel> run(const fs::path& path, double seconds, const auto& work) {
-    const std::string quoted = "'" + path.string() + "'";
-    return run_apart(quoted, seconds, [&](Parcel& out) {
-        try {
-            work(out);
-        } catch (const InvalidInput& error) {
-            throw InvalidInput(quoted + ": " + error.what());
-        }
-    });
-}
-
 /// Cells of each level, tree by tree.
 void count_levels(std::span<const std::uint8_t> cells, std::size_t& next, std::size_t level,
                   unsigned children, std::vector<std::uint64_t>& counts) {
@@ -165,8 +148,7 @@ TreeHead head_of(vtkHyperTreeGrid& grid) {
         throw InvalidInput("its trees have dimension " + std::to_string(head.dimension) +
                            ": trees in space or in a plane of constant z are read");
     }
-    vtkDataArray* const along[]{grid.GetXCoordinates(), grid.GetYCoordinates(),
-                                grid.GetZCoordinates()};
+    const auto along = coordinates_of(grid);
     for (std::size_t d = 0; d < 3; ++d) {
         if (along[d] != nullptr && along[d]->GetNumberOfTuples() == vtkIdType{points[d]}) continue;
         throw InvalidInput("its trees have " + std::to_string(points[d]) + " points in direction " +
@@ -177,13 +159,14 @@ TreeHead head_of(vtkHyperTreeGrid& grid) {
 }
 
 TreeHead tree_head(const fs::path& path, double seconds) {
-    const auto parcel = run(path, seconds, [&](Parcel& out) { put_head(*read_htg(path), out); });
+    const auto parcel =
+        read_file_apart(path, seconds, [&](Parcel& out) { put_head(*read_htg(path), out); });
     return parcel->block<TreeHead>(TreePart::head).front();
 }
 
 std::shared_ptr<const Parcel> trees_apart(const fs::path& path, const Input* input,
                                           double seconds) {
-    return run(path, seconds, [&](Parcel& out) { put_trees(path, input, out); });
+    return read_file_apart(path, seconds, [&](Parcel& out) { put_trees(path, input, out); });
 }
 
 void describe_trees(const fs::path& path, double seconds, Report& report) {
