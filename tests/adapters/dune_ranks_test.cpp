@@ -5,6 +5,10 @@
 // before they are balanced. The pieces of all ranks, gathered, are the surface of one process. Run
 // under mpirun; prints what it compared with the hash of all on one process, and returns 1 where
 // something differs.
+#include <cmath>
+#include <memory>
+#include <type_traits>
+
 #include <dune/common/parallel/mpihelper.hh>
 #include <dune/grid/yaspgrid.hh>
 
@@ -18,30 +22,56 @@ using namespace nestgrid_test;
 namespace {
 
 template <int dim>
-using Yasp = Dune::YaspGrid<dim>;
+using Even = Dune::EquidistantCoordinates<double, dim>;
+template <int dim>
+using Shifted = Dune::EquidistantOffsetCoordinates<double, dim>;
+template <int dim>
+using Given = Dune::TensorProductCoordinates<double, dim>;
 
 /// A grid of the unit square or cube, twice as fine as its coarse grid in each direction.
-template <int dim>
+template <class Coordinates>
 struct Structured {
+    static constexpr int dim = Coordinates::dimension;
+    using Solver = Dune::YaspGrid<dim, Coordinates>;
+    using Place = Dune::FieldVector<double, dim>;
+
     Structured(MPI_Comm communicator, int overlap, bool keeps_overlap)
-        : solver(Dune::FieldVector<double, dim>(1), elements_along(), std::bitset<dim>(), overlap,
-                 communicator) {
-        solver.refineOptions(keeps_overlap);
-        solver.globalRefine(dim == 2 ? 2 : 1);
+        : solver{make(communicator, overlap)} {
+        solver->refineOptions(keeps_overlap);
+        solver->globalRefine(dim == 2 ? 2 : 1);
     }
-    static std::array<int, dim> elements_along() {
+    static std::unique_ptr<Solver> make(MPI_Comm communicator, int overlap) {
         std::array<int, dim> along;
         along.fill(dim == 2 ? 18 : 10);
-        along[0] += 2;
-        return along;
+        along[0] = 20;  // enough for five processes
+        const std::bitset<dim> periodic;
+        if constexpr (std::is_same_v<Coordinates, Even<dim>>) {
+            return std::make_unique<Solver>(Place(1), along, periodic, overlap, communicator);
+        } else if constexpr (std::is_same_v<Coordinates, Shifted<dim>>) {
+            return std::make_unique<Solver>(Place(0.1), Place(0.9), along, periodic, overlap,
+                                            communicator);
+        } else {
+            std::array<std::vector<double>, dim> places;
+            for (std::size_t d = 0; d < places.size(); ++d) {
+                for (int i = 0; i <= along[d]; ++i)
+                    places[d].push_back(std::sqrt(i / (1. * along[d])));
+            }
+            return std::make_unique<Solver>(places, periodic, overlap, communicator);
+        }
     }
-    Yasp<dim> solver;
+    std::unique_ptr<Solver> solver;
 };
+
+/// Without the last bits of the place, which Dune computes anew, and otherwise, on every process.
+double value_at(Point x, bool plane, bool noise) {
+    for (double& along : x) along = std::round(along * 0x1p30) * 0x1p-30;
+    return sphere(x, plane, noise);
+}
 
 template <class Solver>
 std::vector<double> sphere_at_vertices(const Solver& solver, bool noise) {
     return at_vertices(solver,
-                       [&](const Point& x) { return sphere(x, Solver::dimension == 2, noise); });
+                       [&](const Point& x) { return value_at(x, Solver::dimension == 2, noise); });
 }
 
 /// Of a grid that one process has wholly, even if others take part.
@@ -72,7 +102,8 @@ int compare_functions(const Solver& solver, Ranks& ranks) {
     const DuneGrid mine(solver);
     const Distributed grid(mine, ranks);
     const auto f = [](const auto& leaf, const auto& local) {
-        return sphere(nestgrid::detail::dune_point(leaf.geometry().global(local)), dim == 2, false);
+        return value_at(nestgrid::detail::dune_point(leaf.geometry().global(local)), dim == 2,
+                        false);
     };
     const std::vector<double> values = sphere_at_vertices(solver, false);
     const auto of_functions = draw<dim>(grid, DistributedField(grid, DuneFunctionField(mine, f)));
@@ -90,24 +121,32 @@ unsigned long long leaves_of(const Solver& solver) {
     return solver.comm().sum(own);
 }
 
-template <int dim>
-int compare_structured(Ranks& ranks) {
+template <class Coordinates>
+int compare_structured(const char* name, Ranks& ranks) {
     int wrong = 0;
     for (const int overlap : {1, 2}) {
-        const Structured<dim> parts(MPI_COMM_WORLD, overlap, overlap == 2);
-        const Structured<dim> whole(MPI_COMM_SELF, 1, true);
-        const auto leaves = leaves_of(parts.solver);
+        const Structured<Coordinates> parts(MPI_COMM_WORLD, overlap, overlap == 2);
+        const Structured<Coordinates> whole(MPI_COMM_SELF, 1, true);
+        const auto leaves = leaves_of(*parts.solver);
         for (const bool noise : {false, true}) {
-            const auto found = draw_on_ranks(parts.solver, noise, ranks);
-            if (!noise) wrong += compare_functions(parts.solver, ranks);
+            const auto found = draw_on_ranks(*parts.solver, noise, ranks);
+            if (!noise) wrong += compare_functions(*parts.solver, ranks);
             if (ranks.rank() != 0) continue;
-            const auto expected = draw_alone(whole.solver, noise);
-            wrong += count_different("YaspGrid in " + std::to_string(dim) + "-D, overlap " +
+            const auto expected = draw_alone(*whole.solver, noise);
+            wrong += count_different(std::string("YaspGrid, ") + name + ", overlap " +
                                          std::to_string(overlap) + (noise ? ", noise" : ""),
                                      ranks.size(), leaves, found, expected);
         }
     }
     return wrong;
+}
+
+int compare_structured(Ranks& ranks) {
+    return compare_structured<Even<2>>("2-D", ranks) + compare_structured<Even<3>>("3-D", ranks) +
+           compare_structured<Shifted<2>>("2-D, shifted", ranks) +
+           compare_structured<Shifted<3>>("3-D, shifted", ranks) +
+           compare_structured<Given<2>>("2-D, uneven", ranks) +
+           compare_structured<Given<3>>("3-D, uneven", ranks);
 }
 
 /// Without normals and values at points: once UG has moved elements, it gives the children of
@@ -168,13 +207,13 @@ int compare_ug(Ranks& ranks) {
 int refuse(Ranks& ranks) {
     if (ranks.size() == 1) return 0;
     Refusals refusals(ranks);
-    const Yasp<2> bare({1, 1}, {20, 20}, std::bitset<2>(), 0);
+    const Dune::YaspGrid<2> bare({1, 1}, {20, 20}, std::bitset<2>(), 0);
     refusals.expect<InvalidInput>("make it with an overlap of 1", [&] { const DuneGrid g(bare); });
-    const Yasp<2> periodic({1, 1}, {20, 20}, std::bitset<2>("01"), 1);
+    const Dune::YaspGrid<2> periodic({1, 1}, {20, 20}, std::bitset<2>("01"), 1);
     refusals.expect<InvalidInput>("the Dune grid is periodic", [&] { const DuneGrid g(periodic); });
-    Structured<2> parts(MPI_COMM_WORLD, 1, true);
-    const DuneGrid mine(parts.solver);
-    std::vector<double> values = sphere_at_vertices(parts.solver, false);
+    Structured<Even<2>> parts(MPI_COMM_WORLD, 1, true);
+    const DuneGrid mine(*parts.solver);
+    std::vector<double> values = sphere_at_vertices(*parts.solver, false);
     const DuneVertexField own(mine, values);
     refusals.expect<GridError>("are on other processes", [&] { isosurface(mine, own, 0.0); });
     const Distributed grid(mine, ranks);
@@ -182,8 +221,8 @@ int refuse(Ranks& ranks) {
     for (double& value : values) value += ranks.rank();
     refusals.expect<InvalidInput>("its field differs from that of rank",
                                   [&] { const DistributedField other(grid, own); });
-    parts.solver.globalRefine(1);
-    values = sphere_at_vertices(parts.solver, false);
+    parts.solver->globalRefine(1);
+    values = sphere_at_vertices(*parts.solver, false);
     refusals.expect<GridError>("the grid has changed",
                                [&] { const DistributedField stale(grid, own); });
     return refusals.wrong;
@@ -196,8 +235,7 @@ int main(int argc, char** argv) {
     MpiRanks ranks(MPI_COMM_WORLD);
     int wrong = 0;
     try {
-        wrong = compare_structured<2>(ranks) + compare_structured<3>(ranks) + compare_ug(ranks) +
-                refuse(ranks);
+        wrong = compare_structured(ranks) + compare_ug(ranks) + refuse(ranks);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "rank %d: %s\n", ranks.rank(), e.what());
         MPI_Abort(MPI_COMM_WORLD, 1);

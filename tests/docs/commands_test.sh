@@ -152,7 +152,7 @@ check() {
     build/release/docs/examples/figures) figure "$2" "$3" ;;
     build/release/docs/examples/*)
         file=${1##*/}
-        grep -q "add_test(NAME example.$file\b\|^foreach.*\b$file\b" "$source/docs/examples/CMakeLists.txt" ||
+        grep -q "_test(\(NAME \)\?example.$file\b\|^foreach.*\b$file\b" "$source/docs/examples/CMakeLists.txt" ||
             fail "$page: no test runs $1"
         ;;
     build/release/tests/tools/make_plotfiles) run "$build/${1#build/release/}" "${@:2}" ;;

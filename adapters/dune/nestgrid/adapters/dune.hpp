@@ -102,7 +102,7 @@ public:
                        Context& context) const {
         for_each_new_corner(e, which, context,
                             [&](std::size_t n, const Element& child, int corner) {
-                                out[n] = detail::dune_point(child.geometry().corner(corner));
+                                out[n] = Traits::corner(*grid_, child, corner);
                             });
     }
     bool conforming() const { return Traits::conforming; }
@@ -243,9 +243,8 @@ auto DuneGrid<DuneType, Traits>::coarse(std::size_t i) const -> CoarseElement<El
     c.element = coarse_entity(i);
     c.shape = detail::dune_shape(c.element.type());
     const std::size_t corners = topology(c.shape).corners;
-    const auto geometry = c.element.geometry();
     for (std::size_t k = 0; k < corners; ++k) {
-        c.corners[k] = detail::dune_point(geometry.corner(static_cast<int>(k)));
+        c.corners[k] = Traits::corner(*grid_, c.element, static_cast<int>(k));
         c.ids[k] = id(c.element, k);
     }
     if (dimension == 3 && measure(c.shape, std::span(c.corners).first(corners)) < 0) {

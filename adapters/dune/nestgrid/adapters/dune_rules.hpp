@@ -111,6 +111,10 @@ struct DuneDefaults {
         out.clear();
         for (const Element& child : descendantElements(e, e.level() + 1)) out.push_back(child);
     }
+    /// Where a corner lies: the same to the last bit in all elements and processes that have it.
+    static Point corner(const DuneType&, const Element& e, int corner) {
+        return detail::dune_point(e.geometry().corner(corner));
+    }
     /// A number that is the less the earlier one process would list an element of the coarse grid;
     /// for grids over several processes. Here by ids, which are given in that order.
     static std::uint64_t coarse_place(const DuneType& grid, const Element& e) {
