@@ -18,24 +18,30 @@ namespace engine {
 class PolynomialPoints {
 public:
     PolynomialPoints(const HighOrder& data, std::span<const Point> points)
-        : data_{data.data_.get()} {
-        // At a tolerance that all leaves are within, elements are those of the hierarchy, and where
-        // leaves are curved parts of them.
-        const double near = data_->places ? 1e-3 * data_->places->records.extent() : 0;
-        const VirtualRefinement leaves(
-            data, {.tolerance = std::numeric_limits<double>::max(), .position_tolerance = near});
-        probed = probe<double>(leaves, points);
-        const auto elements = probed.elements.as<VirtualElement>();
-        place_.resize(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            leaf_.push_back(VirtualElement::no_leaf);
-            if (!probed.found(i)) continue;
-            const VirtualElement& e = elements[probed.element_of[i]];
-            leaf_[i] = e.leaf;
-            const LeafPolynomial& leaf = data_->field.records.leaves()[e.leaf];
-            const Point at = in_leaf(leaf.parts(), e, probed.reference[i]);
-            place_[i] = leaf.shape == Shape::pyramid ? collapsed(at) : at;
-            if (data_->places) place_[i] = found_in(leaf_[i], points[i], place_[i]);
+        : data_{data.data_.get()},
+          leaf_(points.size(), VirtualElement::no_leaf),
+          place_(points.size()) {
+        std::vector<std::size_t> all(points.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        probed = look(data, points, all, points);
+    }
+
+    /// Takes points that were not found, as vertices on a curved boundary that is drawn more
+    /// coarsely, to leaves beside them.
+    void find_rest(const HighOrder& data, std::span<const Point> points) {
+        for (double by = near(); by > 0 && by < extent(); by *= 8) {
+            for (std::size_t side = 0; side < 6; ++side) {
+                std::vector<std::size_t> rest;
+                std::vector<Point> beside;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    if (leaf_[i] != VirtualElement::no_leaf) continue;
+                    rest.push_back(i);
+                    beside.push_back(points[i]);
+                    beside.back()[side / 2] += side % 2 == 0 ? by : -by;
+                }
+                if (rest.empty()) return;
+                look(data, beside, rest, points);
+            }
         }
     }
 
@@ -70,6 +76,31 @@ public:
     ProbeResult probed;
 
 private:
+    double extent() const { return data_->places ? data_->places->records.extent() : 0; }
+    double near() const { return 1e-3 * extent(); }
+
+    /// Finds places for some of all points, in the leaves around points that are near them.
+    /// \param number of each
+    ProbeResult look(const HighOrder& data, std::span<const Point> around,
+                     std::span<const std::size_t> number, std::span<const Point> points) {
+        // At a tolerance that all leaves are within, elements are those of the hierarchy, and where
+        // leaves are curved parts of them.
+        const VirtualRefinement leaves(
+            data, {.tolerance = std::numeric_limits<double>::max(), .position_tolerance = near()});
+        ProbeResult result = engine::probe<double>(leaves, around);
+        const auto elements = result.elements.as<VirtualElement>();
+        for (std::size_t i = 0; i < around.size(); ++i) {
+            if (!result.found(i)) continue;
+            const std::size_t n = number[i];
+            const VirtualElement& e = elements[result.element_of[i]];
+            leaf_[n] = e.leaf;
+            const LeafPolynomial& leaf = data_->field.records.leaves()[e.leaf];
+            const Point at = in_leaf(leaf.parts(), e, result.reference[i]);
+            place_[n] = leaf.shape == Shape::pyramid ? collapsed(at) : at;
+            if (data_->places) place_[n] = found_in(leaf_[n], points[n], place_[n]);
+        }
+        return result;
+    }
     /// A point of an element below a leaf, in the reference element of the leaf.
     static Point in_leaf(const ShapeParts& leaf, const VirtualElement& e, const Point& reference) {
         const ShapeParts* shape = &leaf;
@@ -161,7 +192,9 @@ ProbeResult probe(const HighOrder& data, std::span<const Point> points) {
 }
 
 void set_polynomial_normals(Surface<3>& surface, const HighOrder& data) {
-    surface.normals = engine::PolynomialPoints(data, surface.vertices).gradients();
+    engine::PolynomialPoints at(data, surface.vertices);
+    at.find_rest(data, surface.vertices);
+    surface.normals = at.gradients();
     for (Point& normal : surface.normals) {
         const double length = norm(normal);
         if (length > 0) normal = (-1 / length) * normal;

@@ -126,8 +126,7 @@ void BoxDescent<Real>::arrive(const View& view) {
     }
     std::array<Point, max_corners> x;
     walk_->corners(view, nullptr, x.data());
-    const PointBox box = box_around(std::span(x).first(view.corner_count()),
-                                    reach_->beyond(view.coarse, view.level));
+    const PointBox box = box_around(std::span(x).first(view.corner_count()), reach_->beyond(view));
     for (const std::uint32_t p : group_on(view.level - 1)) {
         if (box.contains(points_[p])) group.push_back(p);
     }

@@ -82,7 +82,10 @@ void descend_in_boxes(const Question<Real>& question, std::span<const std::uint3
     needs.placed = question.finest;
     const Walk<Real> walk(question.hierarchy, needs, question.hanging);
     Reach reach;
-    if (!question.bounded()) {
+    if (std::optional<Reach> told;
+        !question.bounded() && (told = Reach::told(question.hierarchy))) {
+        reach = std::move(*told);
+    } else if (!question.bounded()) {
         needs.values = false;
         const Walk<Real> whole(question.hierarchy, needs, question.hanging);
         reach = Reach(whole, question.criterion);

@@ -87,6 +87,25 @@ Reach::Reach(const Walk<Real>& walk, const Criterion& criterion) : first_{0} {
     }
 }
 
+template <class Real>
+std::optional<Reach> Reach::told(const Hierarchy<Real>& hierarchy) {
+    const auto task = hierarchy.open();
+    Coarse coarse;
+    Family family;
+    Reach reach;
+    reach.first_.push_back(0);
+    for (std::size_t i = 0; i < hierarchy.coarse_count(); ++i) {
+        hierarchy.coarse(task.get(), i, coarse, family);
+        const float beyond = family.inner_bounds(family.members[0]).beyond_hull;
+        if (beyond < 0) return std::nullopt;
+        reach.of_level_.push_back(static_cast<double>(beyond));
+        reach.first_.push_back(reach.of_level_.size());
+    }
+    return reach;
+}
+
+template std::optional<Reach> Reach::told(const Hierarchy<float>&);
+template std::optional<Reach> Reach::told(const Hierarchy<double>&);
 template Reach::Reach(const Walk<float>&, const Criterion&);
 template Reach::Reach(const Walk<double>&, const Criterion&);
 

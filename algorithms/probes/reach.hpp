@@ -5,11 +5,13 @@
 //
 // An element lies in the convex hull of its corners, because shape functions are not negative and
 // add up to 1. Where eq. (1) holds for positions all nodes below lie in that hull, too, and nothing
-// reaches beyond. Elsewhere one walk under the criterion looks at all positions. What is kept is
-// the greatest reach on each level below each coarse element: a point in an element lies within
-// that reach of the box of every element above.
+// reaches beyond. Elsewhere a hierarchy may tell it with each element (InnerBounds::beyond_hull),
+// or one walk under the criterion looks at all positions. What is kept is the greatest reach on
+// each level below each coarse element: a point in an element lies within that reach of the box of
+// every element above.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <nestgrid/algorithms/criterion.hpp>
@@ -25,7 +27,16 @@ public:
     /// \param walk must carry positions and what the criterion wants; what it places counts, too
     template <class Real>
     Reach(const Walk<Real>& walk, const Criterion& criterion);
+    /// Of coarse elements alone, by what the hierarchy tells of them; nothing where it does not.
+    template <class Real>
+    static std::optional<Reach> told(const Hierarchy<Real>& hierarchy);
 
+    /// The reach below an element, which is told with it or that of its level.
+    template <class Real>
+    double beyond(const ElementView<Real>& view) const {
+        const float told = view.inner_bounds().beyond_hull;
+        return told >= 0 ? static_cast<double>(told) : beyond(view.coarse, view.level);
+    }
     /// The reach below the elements on a level below a coarse element.
     double beyond(std::size_t coarse, int level) const {
         if (first_.empty()) return 0;

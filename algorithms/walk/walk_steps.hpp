@@ -143,8 +143,9 @@ NESTGRID_INLINE void Walk<Real>::project(const View& view, const Split& split, N
         std::copy_n(view.value, corners * stride, value);
     }
     const NodeMask which = needs_.values ? rule.all() & ~(mean | split.crossing) : NodeMask{0};
-    const NodeMask missing = hierarchy_->enter(view.stack->task.get(), view.element(), rule, which,
-                                               value, wanted, frame.family);
+    const NodeMask missing =
+        hierarchy_->enter(view.stack->task.get(), view.element(), rule, which,
+                          needs_.values ? value : nullptr, wanted, frame.family);
     if ((missing & which) != 0) [[unlikely]] {
         put_far_values(view, split, missing & which, value + corners * stride);
     }

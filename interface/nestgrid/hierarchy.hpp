@@ -211,7 +211,8 @@ public:
     /// Enters an element.
     /// \param which new nodes whose values are asked for
     /// \param values component c of node n at values[n * components + c]; where facts().decodes,
-    ///        the caller sets them at the corners. Set at the new nodes, behind the corners
+    ///        the caller sets them at the corners. Set at the new nodes, behind the corners. Null
+    ///        where the walk carries no values, and asks for none
     /// \param wanted children that are asked for, one bit each; the others stay undefined
     /// \return the nodes without a value
     virtual NodeMask enter(Task* task, const Handle& element, const Rule& rule, NodeMask which,
