@@ -6,6 +6,7 @@
 
 #include <high_order/virtual_elements.hpp>
 #include <nestgrid/algorithms/polynomial_values.hpp>
+#include <probes/inverse_map.hpp>
 #include <projection/by_criterion.hpp>
 #include <surfaces/node_gradients.hpp>
 #include <surfaces/probed_colours.hpp>
@@ -17,55 +18,45 @@ namespace engine {
 /// Points and the leaves around them.
 class PolynomialPoints {
 public:
-    PolynomialPoints(const HighOrder& data, std::span<const Point> points)
-        : data_{data.data_.get()},
-          leaf_(points.size(), VirtualElement::no_leaf),
-          place_(points.size()) {
+    /// Which of the points that lie in no drawn part of a curved leaf get the leaf beside them.
+    enum class Beside {
+        inside,   ///< those that lie in it
+        nearest,  ///< all: vertices of surfaces that are drawn more coarsely
+    };
+
+    PolynomialPoints(const HighOrder& data, std::span<const Point> points, Beside beside)
+        : data_{data.data_.get()}, found_(points.size()) {
         std::vector<std::size_t> all(points.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
-        probed = look(data, points, all, points);
+        probed = look(data, points, all, points, Beside::nearest);
+        if (data_->places) look_beside(data, points, beside);
     }
 
-    /// Takes points that were not found, as vertices on a curved boundary that is drawn more
-    /// coarsely, to leaves beside them.
-    void find_rest(const HighOrder& data, std::span<const Point> points) {
-        for (double by = near(); by > 0 && by < extent(); by *= 8) {
-            for (std::size_t side = 0; side < 6; ++side) {
-                std::vector<std::size_t> rest;
-                std::vector<Point> beside;
-                for (std::size_t i = 0; i < points.size(); ++i) {
-                    if (leaf_[i] != VirtualElement::no_leaf) continue;
-                    rest.push_back(i);
-                    beside.push_back(points[i]);
-                    beside.back()[side / 2] += side % 2 == 0 ? by : -by;
-                }
-                if (rest.empty()) return;
-                look(data, beside, rest, points);
-            }
-        }
-    }
-
-    /// The values of all components at a point that was found.
+    /// The values of all components at a point that was found, and its place in the leaf.
     void put_values(std::size_t i) {
-        const LeafPolynomial& leaf = data_->field.records.leaves()[leaf_[i]];
+        const LeafPolynomial& leaf = data_->field.records.leaves()[found_[i].leaf];
         for (std::size_t c = 0; c < probed.components; ++c) {
             probed.values[i * probed.components + c] = net_value(
-                data_->field.records.net(leaf, c), leaf.degree, leaf.factors(), place_[i]);
+                data_->field.records.net(leaf, c), leaf.degree, leaf.factors(), found_[i].place);
         }
+        if (!data_->places) return;
+        const auto [x, y, z] = found_[i].place;
+        const double width = leaf.shape == Shape::pyramid ? 1 - z : 1;
+        probed.reference[i] = {x * width, y * width, z};
     }
 
     /// Gradients of component 0; 0 at points that were not found.
     std::vector<Point> gradients() const {
-        std::vector<Point> all(leaf_.size(), Point{0, 0, 0});
-        std::vector<std::size_t> order(leaf_.size());
+        std::vector<Point> all(found_.size(), Point{0, 0, 0});
+        std::vector<std::size_t> order(found_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::stable_sort(order.begin(), order.end(),
-                         [&](auto a, auto b) { return leaf_[a] < leaf_[b]; });
+                         [&](auto a, auto b) { return found_[a].leaf < found_[b].leaf; });
         auto next = order.begin();
         std::uint32_t number = 0;  // leaves have the order of the walk
         data_->walk.for_each([&](Task*, std::span<const BaseElement> way) {
             if (way.back().member->rule != nullptr) return;
-            for (; next != order.end() && leaf_[*next] == number; ++next) {
+            for (; next != order.end() && found_[*next].leaf == number; ++next) {
                 all[*next] = gradient(*next, way.back());
             }
             ++number;
@@ -76,13 +67,41 @@ public:
     ProbeResult probed;
 
 private:
-    double extent() const { return data_->places ? data_->places->records.extent() : 0; }
-    double near() const { return 1e-3 * extent(); }
+    struct Found {
+        std::uint32_t leaf = VirtualElement::no_leaf;
+        Point place{};  // in the coordinates of the leaf's net: in a pyramid the box's
+        double depth = -std::numeric_limits<double>::infinity();  // in the leaf
 
+        bool inside() const { return depth > -1e-9; }
+    };
+
+    double near() const { return data_->places ? 1e-3 * data_->places->records.extent() : 0; }
+
+    /// Looks for what is not inside a leaf that was found: on curved boundaries, and beside faces
+    /// that are drawn straight.
+    void look_beside(const HighOrder& data, std::span<const Point> points, Beside beside) {
+        for (double by = 2 * near(); by < data_->places->records.extent(); by *= 8) {
+            for (std::size_t side = 0; side < 6; ++side) {
+                std::vector<std::size_t> rest;
+                std::vector<Point> around;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const bool none = found_[i].leaf == VirtualElement::no_leaf;
+                    if (!none && (found_[i].inside() || by > 2 * near())) continue;
+                    rest.push_back(i);
+                    around.push_back(points[i]);
+                    around.back()[side / 2] += side % 2 == 0 ? by : -by;
+                }
+                if (rest.empty()) return;
+                look(data, around, rest, points, beside);
+            }
+            if (beside == Beside::inside) return;
+        }
+    }
     /// Finds places for some of all points, in the leaves around points that are near them.
     /// \param number of each
     ProbeResult look(const HighOrder& data, std::span<const Point> around,
-                     std::span<const std::size_t> number, std::span<const Point> points) {
+                     std::span<const std::size_t> number, std::span<const Point> points,
+                     Beside accepted) {
         // At a tolerance that all leaves are within, elements are those of the hierarchy, and where
         // leaves are curved parts of them.
         const VirtualRefinement leaves(
@@ -91,13 +110,19 @@ private:
         const auto elements = result.elements.as<VirtualElement>();
         for (std::size_t i = 0; i < around.size(); ++i) {
             if (!result.found(i)) continue;
-            const std::size_t n = number[i];
             const VirtualElement& e = elements[result.element_of[i]];
-            leaf_[n] = e.leaf;
             const LeafPolynomial& leaf = data_->field.records.leaves()[e.leaf];
+            const bool pyramid = leaf.shape == Shape::pyramid;
             const Point at = in_leaf(leaf.parts(), e, result.reference[i]);
-            place_[n] = leaf.shape == Shape::pyramid ? collapsed(at) : at;
-            if (data_->places) place_[n] = found_in(leaf_[n], points[n], place_[n]);
+            Found found{e.leaf, pyramid ? collapsed(at) : at};
+            const std::size_t n = number[i];
+            if (data_->places) found.place = found_in(e.leaf, points[n], found.place);
+            found.depth = face_distance(pyramid ? Shape::hexahedron : leaf.shape, found.place);
+            if (accepted == Beside::inside && !found.inside()) continue;
+            if (found.depth <= found_[n].depth) continue;
+            found_[n] = found;
+            if (!data_->places || probed.level.empty()) continue;
+            probed.level[n] = result.level[i];
         }
         return result;
     }
@@ -153,14 +178,14 @@ private:
         return along;
     }
     Point gradient(std::size_t i, const BaseElement& e) const {
-        const LeafPolynomial& leaf = data_->field.records.leaves()[leaf_[i]];
+        const LeafPolynomial& leaf = data_->field.records.leaves()[found_[i].leaf];
         const Factors& factors = leaf.factors();
-        Point at = place_[i];
+        Point at = found_[i].place;
         // The apex of a pyramid has no gradient: that of a point below.
         if (leaf.shape == Shape::pyramid) at[2] = std::min(at[2], 1 - 1e-6);
         const Point inner = net_gradient(data_->field.records.net(leaf), leaf.degree, factors, at);
         std::array<Point, 3> along{};  // derivatives of the position
-        if (data_->places) along = axes_at(leaf_[i], at);
+        if (data_->places) along = axes_at(found_[i].leaf, at);
         for (std::size_t d = 0; d < 3 && !data_->places; ++d) {
             std::array<double, max_corners> x{};
             x.fill(e.x[e.shape->corners - 1][d]);  // the apex is four corners of the box
@@ -174,14 +199,16 @@ private:
     }
 
     const HighOrderData* data_;
-    std::vector<std::uint32_t> leaf_;
-    std::vector<Point> place_;  // in the coordinates of the leaf's net: in a pyramid the box's
+    std::vector<Found> found_;
 };
 
 }  // namespace engine
 
-ProbeResult probe(const HighOrder& data, std::span<const Point> points) {
-    engine::PolynomialPoints at(data, points);
+namespace {
+
+ProbeResult values_at(const HighOrder& data, std::span<const Point> points,
+                      engine::PolynomialPoints::Beside beside) {
+    engine::PolynomialPoints at(data, points, beside);
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (at.probed.found(i)) at.put_values(i);
     }
@@ -191,10 +218,16 @@ ProbeResult probe(const HighOrder& data, std::span<const Point> points) {
     return std::move(at.probed);
 }
 
+}  // namespace
+
+ProbeResult probe(const HighOrder& data, std::span<const Point> points) {
+    return values_at(data, points, engine::PolynomialPoints::Beside::inside);
+}
+
 void set_polynomial_normals(Surface<3>& surface, const HighOrder& data) {
-    engine::PolynomialPoints at(data, surface.vertices);
-    at.find_rest(data, surface.vertices);
-    surface.normals = at.gradients();
+    using engine::PolynomialPoints;
+    surface.normals =
+        PolynomialPoints(data, surface.vertices, PolynomialPoints::Beside::nearest).gradients();
     for (Point& normal : surface.normals) {
         const double length = norm(normal);
         if (length > 0) normal = (-1 / length) * normal;
@@ -204,7 +237,7 @@ void set_polynomial_normals(Surface<3>& surface, const HighOrder& data) {
 void set_polynomial_colours(Surface<3>& surface, const HighOrder& data) {
     if (surface.attributes.empty()) return;
     engine::ProbedColours(surface, [&](std::span<const Point> points) {
-        return probe(data, points);
+        return values_at(data, points, engine::PolynomialPoints::Beside::nearest);
     }).colour_from(0);
 }
 
