@@ -18,7 +18,7 @@ from ._ask import ask
 from ._blocks import BlockFrames, Blocks, Rule
 from ._choice import Choice, chosen
 from ._fields import Field
-from ._load_cells import load_boxes, load_mesh, load_trees
+from ._load_cells import load_boxes, load_mesh, load_tree_frames, load_trees
 from ._load_stored import hierarchy, plotfiles
 from ._nestgrid import InvalidInput, IoError
 from ._sources import Frames, Volume
@@ -72,9 +72,9 @@ def load(
                 of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it; or a
                 picture; or a plotfile of AMReX, a folder with the file Header, which must stay as
                 it is; or other boxes of cells (Blocks): .vthb, Enzo's .hierarchy, .athdf of
-                Athena++, or HDF5 of Chombo or FLASH, of any name; or .htg, hyper trees divided by
-                two (Octree). Several plotfiles, or files of boxes of one format, with the same
-                boxes, are Frames. What has one sample along an axis is a plane:
+                Athena++, or HDF5 of Chombo or FLASH, of any name; or .htg, hyper trees (Octree).
+                Several plotfiles, or files of boxes or of hyper trees, of one format and with
+                the same cells, are Frames. What has one sample along an axis is a plane:
                 Volume.array[i, j]. Reading .vtu, .vti, .vthb, .htg, .nii and pictures needs VTK's
                 Python package, HDF5 and Enzo h5py, DICOM pydicom
     array       the name of the field, for .nestgrid, cells, .vtu and .vti, or of the series of
@@ -150,6 +150,10 @@ class _Kind(NamedTuple):
     boxes: bool
     dicom: bool
 
+    def cells(self) -> tuple[bool, bool]:
+        """Whether it is a plotfile, and whether a file of boxes."""
+        return bool(self.plotfile), self.boxes
+
 
 def _kind(path: str) -> _Kind:
     name = path.lower()
@@ -168,23 +172,33 @@ def _frames(
     rule: Rule,
     times: Sequence[float] | None,
 ) -> Frames:
-    """Several plotfiles or files of boxes."""
+    """Several plotfiles, or files of boxes or of hyper trees."""
     given = [] if times is None else np.ravel(times).tolist()
-    if times is not None and (len(given) != len(paths) or len(paths) == 1):
-        raise InvalidInput(f"load(): times has {len(given)} numbers for {len(paths)} files")
+    if len(paths) == 1:
+        raise InvalidInput(
+            f"load(): times is for several files: '{paths[0]}' alone is given no time"
+        )
+    if times is not None and len(given) != len(paths):
+        raise InvalidInput(
+            f"load(): times has {len(given)}, not one for each of the {len(paths)} files"
+        )
     for path, kind in zip(paths, kinds):
-        if not kind.plotfile and not kind.boxes:
+        if not kind.plotfile and not kind.boxes and kind.suffix != ".htg":
             raise InvalidInput(
-                "load(): several files are frames of plotfiles or of boxes of cells, which "
-                f"'{path}' is not"
+                "load(): several files are frames of plotfiles, of boxes of cells or of hyper "
+                f"trees, which '{path}' is not"
             )
-        if bool(kind.plotfile) != bool(kinds[0].plotfile):
+        if kind.cells() != kinds[0].cells():
             raise InvalidInput(f"load(): '{path}' is of another format than '{paths[0]}'")
     if kinds[0].plotfile:
         return plotfiles([kind.plotfile for kind in kinds], array, rule, given)
-    loaded: list[tuple[Blocks, float | None]] = []
     for path in paths:
         _require_file(path)
+    if kinds[0].suffix == ".htg":
+        times_of_files = given or np.arange(float(len(paths))).tolist()
+        return load_tree_frames(paths, array, choice, times_of_files)
+    loaded: list[tuple[Blocks, float | None]] = []
+    for path in paths:
         name = loaded[0][0].name if loaded else array
         loaded.append(load_boxes(path, name, choice, rule))
     told = [time for _, time in loaded if time is not None]

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ._blocks import Blocks, Rule
 from ._cells import Cells
 from ._choice import Choice, chosen, numbered
 from ._nestgrid import InvalidInput
-from ._sources import Octree
+from ._sources import Octree, OctreeFrames
 
 
 def load_mesh(path: str, array: str, choice: Choice) -> Cells:
@@ -37,20 +37,66 @@ def load_mesh(path: str, array: str, choice: Choice) -> Cells:
 
 
 def load_trees(path: str, array: str, choice: Choice) -> Octree:
-    _refuse_frame(choice)
-    place, parts = _arrays("_read_trees.py", path, array)
-    part = _component(path, choice, parts["values"].shape[1])
+    trees = _trees_of(path, array, choice)
     try:
         return Octree(
-            parts["leaves"],
-            parts["values"][:, part],
-            max_level=place["max_level"],
-            coordinates=place["coordinates"],
-            masked=parts["masked"],
-            name=place["name"],
+            trees.leaves,
+            trees.values,
+            max_level=trees.max_level,
+            factor=trees.factor,
+            coordinates=trees.coordinates,
+            masked=trees.masked,
+            name=trees.name,
         )
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {str(error).removeprefix('Octree(): ')}") from None
+
+
+def load_tree_frames(
+    paths: list[str], array: str, choice: Choice, times: list[float]
+) -> OctreeFrames:
+    first = _trees_of(paths[0], array, choice)
+    values = [first.values]
+    for path in paths[1:]:
+        other = _trees_of(path, first.name, choice)
+        if not first.has_grid_of(other):
+            raise InvalidInput(f"load(): '{path}' has another grid than '{paths[0]}'")
+        values.append(other.values)
+    along = [np.array(x) for x in first.coordinates] + [np.zeros(1)] * (3 - len(first.coordinates))
+    built_of = (first.max_level, first.factor, along)
+    masked = first.masked if first.masked.any() else np.zeros(0, np.uint8)
+    try:
+        return OctreeFrames._of(first.leaves, values, times, masked, built_of, paths, first.name)
+    except InvalidInput as error:
+        raise InvalidInput(f"load(): {error}") from None
+
+
+class _Trees(NamedTuple):
+    """What is in a file of hyper trees, as Octree() takes it."""
+
+    leaves: np.ndarray
+    values: np.ndarray
+    masked: np.ndarray
+    max_level: int
+    factor: int
+    coordinates: list[list[float]]
+    name: str
+
+    def has_grid_of(self, other: _Trees) -> bool:
+        return (
+            self.max_level == other.max_level
+            and self.factor == other.factor
+            and self.coordinates == other.coordinates
+            and np.array_equal(self.leaves, other.leaves)
+            and np.array_equal(self.masked, other.masked)
+        )
+
+
+def _trees_of(path: str, array: str, choice: Choice) -> _Trees:
+    _refuse_frame(choice)
+    place, parts = _arrays("_read_trees.py", path, array)
+    part = _component(path, choice, parts["values"].shape[1])
+    return _Trees(parts["leaves"], parts["values"][:, part], parts["masked"], **place)
 
 
 def load_boxes(path: str, array: str, choice: Choice, rule: Rule) -> tuple[Blocks, float | None]:

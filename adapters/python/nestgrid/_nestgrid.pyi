@@ -27,9 +27,6 @@ class Source:
     def range(self, threads: int) -> list[float]: ...
     def clear(self) -> None: ...
 
-class OctreeSource(Source):
-    def leaves(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.uint8]]: ...
-
 class CellSource(Source):
     @property
     def degree(self) -> int: ...
@@ -47,6 +44,12 @@ class Frames:
     def times(self) -> list[float]: ...
     def clear(self) -> None: ...
     def at(self, t: float, cubic: bool, threads: int) -> Source: ...
+
+class OctreeFrames(Frames):
+    def leaves(
+        self,
+    ) -> tuple[NDArray[np.int64], list[NDArray[np.float64]], NDArray[np.uint8]]: ...
+    def first(self) -> Source: ...
 
 class _VolumeFile(TypedDict):
     numbers: np.ndarray
@@ -83,11 +86,14 @@ def block_frames(
 ) -> Frames: ...
 def octree(
     leaves: NDArray[np.int64],
-    values: NDArray[np.float64],
+    values: Sequence[NDArray[np.float64]],
+    times: Sequence[float],
     masked: NDArray[np.uint8],
     max_level: int,
+    factor: int,
     coordinates: Sequence[ArrayLike],
-) -> OctreeSource: ...
+    names: Sequence[str],
+) -> OctreeFrames: ...
 def cells(
     points: NDArray[np.float64],
     types: NDArray[np.uint8],

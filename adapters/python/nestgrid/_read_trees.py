@@ -45,7 +45,7 @@ def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
         "masked": (trees.masked, "uint8"),
     }
     place, data = packed(arrays)
-    place |= {"name": wanted, "max_level": trees.max_level}
+    place |= {"name": wanted, "max_level": trees.max_level, "factor": trees.factor}
     return place | {"coordinates": [axis.tolist() for axis in trees.coordinates]}, data
 
 

@@ -103,7 +103,8 @@ class Octree(Field):
     values       (n,): of the leaves, from which nodes get means that are exact for linear
                  functions; or (n, 8) ((n, 4)): at the corners of the leaves, x fastest,
                  equal where leaves meet. From numbered nodes: values_at_nodes[nodes_of_leaves]
-    max_level    0 to 20: a root is 2**max_level cells wide; None: the greatest level
+    factor       2, or 3 where elements are divided by three along each direction
+    max_level    0 to 20 (13): a root is factor**max_level cells wide; None: the greatest level
     spacing      size of a cell of max_level, in units of length; None: 1
     origin       position of the corner (0, 0, 0); None: 0
     coordinates  in the place of spacing and origin: of the corners of roots, one ascending sequence
@@ -116,11 +117,12 @@ class Octree(Field):
     """
 
     __module__ = "nestgrid"
-    _octree: _nestgrid.OctreeSource
+    _octree: _nestgrid.OctreeFrames
 
     @takes(
         leaves=kinds.array,
         values=numbers,
+        factor=whole(2, 3),
         max_level=optional(whole(0, 20)),
         coordinates=optional(sequence(numbers, "one sequence of numbers for each direction")),
         masked=optional(kinds.array),
@@ -130,6 +132,7 @@ class Octree(Field):
         leaves: np.ndarray,
         values: np.ndarray,
         *,
+        factor: int = 2,
         max_level: int | None = None,
         spacing: Numbers | None = None,
         origin: Numbers | None = None,
@@ -148,8 +151,9 @@ class Octree(Field):
         dimension = leaves.shape[1] - 1
         if max_level is None:
             max_level = int(leaves[:, -1].max())
-        if not 0 <= max_level <= 20:
-            raise InvalidInput(f"Octree(): max_level is {max_level}, not 0 to 20")
+        most = 20 if factor == 2 else 13
+        if not 0 <= max_level <= most:
+            raise InvalidInput(f"Octree(): max_level is {max_level}, not 0 to {most}")
         if coordinates is None:
             step, start, _ = _placed(dimension, spacing, origin)
             for what, given in (("spacing", step), ("origin", start)):
@@ -158,9 +162,10 @@ class Octree(Field):
                         f"Octree(): {what} has {given.size} numbers, but leaves {dimension} "
                         "coordinates"
                     )
-            roots = np.maximum(leaves[:, :-1].max(axis=0) >> max_level, 0) + 1
+            width = factor**max_level
+            roots = np.maximum(leaves[:, :-1].max(axis=0) // width, 0) + 1
             coordinates = [
-                start[d] + step[d] * 2.0**max_level * np.arange(roots[d] + 1)
+                start[d] + step[d] * float(width) * np.arange(roots[d] + 1)
                 for d in range(dimension)
             ]
         elif len(coordinates) < dimension:
@@ -169,10 +174,10 @@ class Octree(Field):
             )
         along = [np.ravel(x) for x in coordinates] + [np.zeros(1)] * (3 - len(coordinates))
         hidden = np.zeros(0, np.uint8) if masked is None else (masked != 0).astype(np.uint8)
-        self._built_of = (max_level, along)
+        self._built_of = (max_level, factor, along)
         self._count = len(leaves)
-        self._octree = _nestgrid.octree(leaves, values, hidden, max_level, along)
-        self._set(self._octree, name, unit)
+        self._octree = _nestgrid.octree(leaves, [values], [0], hidden, *self._built_of, [])
+        self._set(self._octree.first(), name, unit)
 
     def _size(self) -> str:
         level = self._built_of[0]
@@ -181,7 +186,7 @@ class Octree(Field):
     def __reduce__(self) -> tuple[Any, ...]:
         leaves, values, masked = self._octree.leaves()
         hidden = masked if len(masked) else None
-        return _octree_of, (leaves, values, hidden, *self._built_of, self._name, self._unit)
+        return _octree_of, (leaves, values[0], hidden, *self._built_of, self._name, self._unit)
 
 
 class Frames:
@@ -291,6 +296,50 @@ class Frames:
         return _frames_of, (arrays, self.times, self._place, self._name, self._unit)
 
 
+class OctreeFrames(Frames):
+    """The leaves of an octree at several times, from files."""
+
+    _frames: _nestgrid.OctreeFrames
+
+    @classmethod
+    def _of(
+        cls,
+        leaves: np.ndarray,
+        values: list[np.ndarray],
+        times: list[float],
+        masked: np.ndarray,
+        built_of: tuple[int, int, list[np.ndarray]],
+        names: list[str],
+        name: str,
+        unit: str = "",
+    ) -> OctreeFrames:
+        """names are those of files, for sentences; the rest is as for Octree."""
+        frames = cls.__new__(cls)
+        frames._frames = _nestgrid.octree(leaves, values, times, masked, *built_of, names)
+        frames._count = len(leaves)
+        frames._built_of = built_of
+        frames._name = name
+        frames._unit = unit
+        return frames
+
+    def _size(self) -> str:
+        dimension, level = self.at(self.times[0]).dimension, self._built_of[0]
+        return f"{self._count} leaves of dimension {dimension}, up to level {level}"
+
+    def _range_text(self) -> str:
+        ranges = [self.at(t).range for t in self.times]
+        return f"from {min(r[0] for r in ranges):.6g} to {max(r[1] for r in ranges):.6g}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        leaves, values, masked = self._frames.leaves()
+        names: list[str] = []
+        place = (self._built_of, names, self._name, self._unit)
+        return OctreeFrames._of, (leaves, values, self.times, masked, *place)
+
+    _count: int
+    _built_of: tuple[int, int, list[np.ndarray]]
+
+
 class FrameField(Field):
     """The field of Frames at a time."""
 
@@ -363,6 +412,7 @@ def _octree_of(
     values: np.ndarray,
     masked: np.ndarray | None,
     max_level: int,
+    factor: int,
     coordinates: list[np.ndarray],
     name: str,
     unit: str,
@@ -371,6 +421,7 @@ def _octree_of(
         leaves,
         values,
         max_level=max_level,
+        factor=factor,
         coordinates=coordinates,
         masked=masked,
         name=name,

@@ -18,27 +18,29 @@ class Trees:
     index: np.ndarray
     masked: np.ndarray
     max_level: int
+    factor: int
     coordinates: list[np.ndarray]
 
 
 def trees_of(grid: Any) -> Trees:
     """The leaves of a grid; masked cells and ghost cells are masked.
 
-    Raises ValueError with a sentence where it is no octree, or no quadtree of constant z.
+    Raises ValueError with a sentence where trees lie neither in space nor in a plane of one z.
     """
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     points = np.zeros(3, np.int64)
     grid.GetDimensions(points)
     flat = points[2] == 1
-    if grid.GetBranchFactor() != 2 or (points[:2] < 2).any():
+    factor = grid.GetBranchFactor()
+    if (points[:2] < 2).any():
         raise ValueError(
-            f"its trees are divided by {grid.GetBranchFactor()} in dimension "
-            f"{grid.GetDimension()}: trees by two are read, in space or in a plane of constant z"
+            f"its trees have dimension {grid.GetDimension()}: trees in space or in a plane of "
+            "constant z are read"
         )
     max_level = grid.GetNumberOfLevels() - 1
     dimension = 2 if flat else 3
-    parts = [_leaves(grid, i, max_level, dimension) for i in range(grid.GetMaxNumberOfTrees())]
+    parts = [_leaves(grid, i, max_level, factor, dimension) for i in range(grid.GetMaxNumberOfTrees())]
     found = [part for part in parts if part]
     if not found:
         raise ValueError("it has no trees")
@@ -55,7 +57,7 @@ def trees_of(grid: Any) -> Trees:
     if any(axis is None for axis in axes[:dimension]):
         raise ValueError("its trees have no coordinates")
     coordinates = [vtk_to_numpy(axis).astype(float) for axis in axes[:dimension]]
-    return Trees(leaves, index, masked, max_level, coordinates)
+    return Trees(leaves, index, masked, max_level, factor, coordinates)
 
 
 def _numbers(bits: Any) -> np.ndarray:
@@ -68,7 +70,7 @@ def _numbers(bits: Any) -> np.ndarray:
 
 
 def _leaves(
-    grid: Any, number: int, max_level: int, dimension: int
+    grid: Any, number: int, max_level: int, factor: int, dimension: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Leaves of one tree, (n, dimension + 1), and their places in the arrays of cells."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -79,7 +81,7 @@ def _leaves(
         return None
     corner = [reference(0) for _ in range(3)]
     grid.GetLevelZeroCoordinatesFromIndex(number, *corner)
-    low = np.array([[int(x) << max_level for x in corner[:dimension]]], np.int64)
+    low = np.array([[int(x) * factor**max_level for x in corner[:dimension]]], np.int64)
     counts, splits, ids = vtkTypeInt64Array(), vtkBitArray(), vtkIdList()
     # Below masked cells nothing is drawn: they are leaves.
     mask = grid.GetMask() if grid.HasMask() else None
@@ -89,12 +91,13 @@ def _leaves(
     is_split[: splits.GetNumberOfTuples()] = _numbers(splits)
     leaves = []
     begin = 0
-    children = np.array([[c >> d & 1 for d in range(dimension)] for c in range(1 << dimension)])
+    number_of = range(factor**dimension)
+    children = np.array([[c // factor**d % factor for d in range(dimension)] for c in number_of])
     for level, count in enumerate(vtk_to_numpy(counts)):
         here = is_split[begin : begin + count]
         begin += count
         leaf = low[~here]
         leaves.append(np.column_stack([leaf, np.full(len(leaf), level)]))
-        half = 1 << (max_level - level - 1) if here.any() else 0
-        low = (low[here, None] + children * half).reshape(-1, dimension)
+        part = factor ** (max_level - level - 1) if here.any() else 0
+        low = (low[here, None] + children * part).reshape(-1, dimension)
     return np.concatenate(leaves), index[~is_split]

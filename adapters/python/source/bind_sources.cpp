@@ -162,31 +162,42 @@ std::shared_ptr<Frames> block_frames_of(const std::vector<BlockFrame>& frames,
 using Leaves = py::array_t<std::int64_t, py::array::c_style>;
 using Masks = py::array_t<std::uint8_t, py::array::c_style>;
 
-std::shared_ptr<OctreeSource> octree_of(const Leaves& leaves, const Numbers& values,
-                                        const Masks& masked, int max_level,
-                                        const std::array<std::vector<double>, 3>& coordinates) {
+/// \param values in each frame
+/// \param names of the frames, for sentences, or nothing
+std::shared_ptr<OctreeFrames> octree_of(const Leaves& leaves, const std::vector<Numbers>& values,
+                                        const std::vector<double>& times, const Masks& masked,
+                                        int max_level, int factor,
+                                        const std::array<std::vector<double>, 3>& coordinates,
+                                        const std::vector<std::string>& names) {
     OctreeArrays arrays;
     arrays.dimension = static_cast<int>(leaves.shape(1)) - 1;
+    arrays.factor = factor;
     arrays.max_level = max_level;
+    arrays.names = names;
     const auto span_of = [](const auto& array) {
         return std::span(array.data(), static_cast<std::size_t>(array.size()));
     };
     arrays.leaves = span_of(leaves);
-    arrays.values = span_of(values);
     arrays.masked = span_of(masked);
     arrays.coordinates = coordinates;
-    const std::array memory{keep(leaves), keep(values), keep(masked)};
-    return interruptible(1,
-                         [arrays, memory](const Call& call) { return make_octree(arrays, call); });
+    std::vector memory{keep(leaves), keep(masked)};
+    for (const Numbers& each : values) {
+        arrays.values.push_back(span_of(each));
+        memory.push_back(keep(each));
+    }
+    return interruptible(
+        1, [arrays, times, memory](const Call& call) { return make_octree(arrays, times, call); });
 }
 
-py::tuple leaves_of(const OctreeSource& octree) {
+py::tuple leaves_of(const OctreeFrames& octree) {
     const OctreeLeaves all = octree.leaves();
-    const auto columns = octree.dimension() + py::ssize_t{1};
+    const int dimension = octree[0]->field().dimension();
+    const auto columns = dimension + py::ssize_t{1};
     const auto count = static_cast<py::ssize_t>(all.leaves.size()) / columns;
-    const auto corners = py::ssize_t{1} << octree.dimension();
-    return py::make_tuple(Leaves({count, columns}, all.leaves.data()),
-                          Numbers({count, corners}, all.values.data()),
+    const auto corners = py::ssize_t{1} << dimension;
+    py::list values;
+    for (const auto& frame : all.values) values.append(Numbers({count, corners}, frame.data()));
+    return py::make_tuple(Leaves({count, columns}, all.leaves.data()), values,
                           Masks(static_cast<py::ssize_t>(all.masked.size()), all.masked.data()));
 }
 
@@ -257,8 +268,6 @@ void bind_sources(py::module_& m) {
             },
             py::arg("threads"))
         .def("clear", &Source::clear);
-    py::class_<OctreeSource, Source, std::shared_ptr<OctreeSource>>(m, "OctreeSource")
-        .def("leaves", &leaves_of);
     m.def(
         "volume",
         [](const py::array& array, const Numbers& spacing, const Numbers& origin,
@@ -271,8 +280,9 @@ void bind_sources(py::module_& m) {
     m.def("blocks", &blocks_of, py::arg("boxes"), py::arg("ratios"), py::arg("spacing"),
           py::arg("origin"), py::arg("rule"));
     m.def("block_frames", &block_frames_of, py::arg("frames"), py::arg("times"), py::arg("names"));
-    m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("masked"),
-          py::arg("max_level"), py::arg("coordinates"));
+    m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("times"),
+          py::arg("masked"), py::arg("max_level"), py::arg("factor"), py::arg("coordinates"),
+          py::arg("names"));
     py::class_<CellSource, Source, std::shared_ptr<CellSource>>(m, "CellSource")
         .def_property_readonly("degree", &CellSource::degree);
     m.def("cells", &cell_source_of, py::arg("points"), py::arg("types"), py::arg("offsets"),
@@ -283,6 +293,10 @@ void bind_sources(py::module_& m) {
         .def_property_readonly("times", &Frames::times)
         .def("clear", &Frames::clear)
         .def("at", &field_at, py::arg("t"), py::arg("cubic"), py::arg("threads"));
+    py::class_<OctreeFrames, Frames, std::shared_ptr<OctreeFrames>>(m, "OctreeFrames")
+        .def("leaves", &leaves_of)
+        .def("first",
+             [](const OctreeFrames& frames) { return std::make_shared<Source>(frames[0]); });
     m.def("load", &loaded, py::arg("path"), py::arg("array"));
     m.def("plotfiles", &plotfiles, py::arg("paths"), py::arg("array"), py::arg("rule"),
           py::arg("times"));

@@ -61,30 +61,39 @@ std::shared_ptr<Source> make_volume(const Samples& samples, const Call& call);
 /// \throw InvalidInput as make_volume(), and where they differ in these
 Frames make_frames(const std::vector<Samples>& frames, std::vector<double> times, const Call& call);
 
-/// Leaves and values of an octree or quadtree, copied.
+/// Leaves of trees of squares or cubes, and values in frames, copied.
 struct OctreeArrays {
     int dimension = 3;
+    int factor = 2;  ///< into how many parts elements are divided along each direction: 2 or 3
     int max_level = 0;
     std::span<const std::int64_t> leaves;  ///< x, y, (z,) level of each, in finest cells
-    std::span<const double> values;        ///< one for each leaf, or for each corner of each
+    /// In each frame, one for each leaf, or for each corner of each.
+    std::vector<std::span<const double>> values;
+    std::vector<std::string> names;        ///< of the frames, for sentences, or nothing
     std::span<const std::uint8_t> masked;  ///< for each leaf, or nothing
     /// Coordinates of the corners of the trees along each direction.
     std::array<std::vector<double>, 3> coordinates;
 };
-/// The leaves of an octree as they are kept, and the values at their corners.
+/// The leaves of trees as they are kept, and the values at their corners.
 struct OctreeLeaves {
-    std::vector<std::int64_t> leaves;  ///< as in OctreeArrays, in another order
-    std::vector<double> values;        ///< for each corner of each
-    std::vector<std::uint8_t> masked;  ///< for each leaf, or nothing
+    std::vector<std::int64_t> leaves;         ///< as in OctreeArrays, in another order
+    std::vector<std::vector<double>> values;  ///< in each frame, for each corner of each
+    std::vector<std::uint8_t> masked;         ///< for each leaf, or nothing
 };
-class OctreeSource : public Source {
+class OctreeFrames : public Frames {
 public:
-    using Source::Source;
-    virtual OctreeLeaves leaves() const = 0;
+    OctreeFrames(Frames frames, std::function<OctreeLeaves()> leaves)
+        : Frames(std::move(frames)), leaves_{std::move(leaves)} {}
+    OctreeLeaves leaves() const { return leaves_(); }
+
+private:
+    std::function<OctreeLeaves()> leaves_;
 };
-/// Leaves without a value (NaN) are hidden, and those with such a corner.
+/// Leaves without a value (NaN) in any frame are hidden, and those with such a corner.
+/// \param times one for each frame, ascending
 /// \throw InvalidInput where the leaves are no forest, or values at one node differ
-std::shared_ptr<OctreeSource> make_octree(const OctreeArrays& arrays, const Call& call);
+std::shared_ptr<OctreeFrames> make_octree(const OctreeArrays& arrays, std::vector<double> times,
+                                          const Call& call);
 
 /// Numbers of the cells of one box, borrowed.
 struct BoxOfNumbers {

@@ -152,6 +152,52 @@ def test_octree_of_means(reference):
     np.testing.assert_array_equal(*drawn)
 
 
+def thirds(random, dimension, deepest=3):
+    """Leaves of 2 x 1 (x 2) roots, divided by three at random, by up to as many levels."""
+    leaves = []
+
+    def add(low, level):
+        if level == deepest or (level > 0 and random.random() < 0.7):
+            leaves.append([*low, level])
+            return
+        width = 3 ** (deepest - level - 1)
+        for c in range(3**dimension):
+            add([x + width * (c // 3**d % 3) for d, x in enumerate(low)], level + 1)
+
+    roots = (2, 1, 2)[:dimension]
+    for i in range(int(np.prod(roots))):
+        add([3**deepest * x for x in np.unravel_index(i, roots)], 0)
+    return np.array(leaves)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_leaves_divided_by_three(dimension):
+    """Linear functions come back, and surfaces are closed where levels jump."""
+    for seed in range(3):
+        random = np.random.default_rng(seed)
+        leaves = random.permutation(thirds(random, dimension))
+        low, level = leaves[:, :-1], leaves[:, -1:]
+        centres = low + 3.0 ** (3 - level) / 2
+        spacing, slope = np.array([0.5, 1, 0.25])[:dimension], np.array([0.3, -0.7, 0.4])[:dimension]
+        points = spacing * random.uniform(0, 27, (200, dimension)) * [2, 1, 2][:dimension]
+        given = {"factor": 3, "max_level": 3, "spacing": spacing}
+        octree = nestgrid.Octree(leaves, spacing * centres @ slope, **given)
+        np.testing.assert_allclose(octree.probe(points), points @ slope, atol=1e-11)
+        distance = np.linalg.norm((centres - [27, 13, 28][:dimension]) / [27, 13, 27][:dimension], axis=1)
+        if dimension == 2:
+            continue
+        octree = nestgrid.Octree(leaves, distance, **given)
+        for threshold in (0, 0.02, 0.2):
+            report = octree.isosurface(0.6, threshold).report()
+            assert report["open_edges"] == 0 and report["triangles"] > 50, (seed, threshold)
+    with pytest.raises(nestgrid.InvalidInput, match="max_level is 14, not 0 to 13"):
+        nestgrid.Octree(leaves, level[:, 0], factor=3, max_level=14)
+    with pytest.raises(nestgrid.InvalidInput, match="do not fill it"):
+        nestgrid.Octree(leaves[1:], level[1:, 0], **given)
+    with pytest.raises(nestgrid.InvalidInput, match="overlaps"):
+        nestgrid.Octree(np.vstack([leaves, leaves[:1]]), np.zeros(len(leaves) + 1), **given)
+
+
 def test_forest_and_mask():
     """Two roots beside each other are one domain; a masked leaf leaves a hole."""
     leaves = [[x, y, z, 1] for x in range(4) for y in range(2) for z in range(2)]

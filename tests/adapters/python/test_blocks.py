@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Boxes of cells on levels: of arrays, which are borrowed, and of plotfiles, which are mapped."""
+import math
 import os
 import pickle
 import sys
@@ -185,8 +186,10 @@ def test_plotfiles_are_frames(tmp_path):
         for t, field in ((1, blocks()), (3, blocks(moved)), (2, mean)):
             np.testing.assert_allclose(each.at(t).isosurface(0).vertices, field.isosurface(0).vertices, atol=1e-12)
     assert nestgrid.load(paths, times=[0, 10]).times == [0, 10]
-    with pytest.raises(nestgrid.InvalidInput, match="times has 1 numbers for 2 files"):
+    with pytest.raises(nestgrid.InvalidInput, match="times has 1, not one for each of the 2 files"):
         nestgrid.load(paths, times=[0])
+    with pytest.raises(nestgrid.InvalidInput, match="plt0' alone is given no time"):
+        nestgrid.load(paths[0], times=[0])
     with pytest.raises(nestgrid.InvalidInput, match="ascend"):
         nestgrid.load(paths[::-1])
     with pytest.raises(nestgrid.InvalidInput, match="there are no paths"):
@@ -195,7 +198,7 @@ def test_plotfiles_are_frames(tmp_path):
     with pytest.raises(nestgrid.InvalidInput, match="plt2' has another grid than '.*plt0'"):
         nestgrid.load([paths[0], tmp_path / "plt2"])
     (tmp_path / "x.vti").write_text("")
-    with pytest.raises(nestgrid.InvalidInput, match="plotfiles or of boxes of cells, which '.*x.vti' is not"):
+    with pytest.raises(nestgrid.InvalidInput, match="of boxes of cells or of hyper trees, which '.*x.vti' is not"):
         nestgrid.load([paths[0], tmp_path / "x.vti"])
 
 
@@ -267,7 +270,7 @@ def test_trees_have_the_surface_of_boxes(amr_files):
 
 
 def test_masked_and_ghost_trees(tmp_path):
-    """What is masked or belongs to another process is not drawn; trees by three are refused."""
+    """What is masked or belongs to another process is not drawn."""
     pytest.importorskip("vtkmodules.vtkIOXML")
     import vtk
     from vtk.util.numpy_support import numpy_to_vtk
@@ -305,14 +308,122 @@ def test_masked_and_ghost_trees(tmp_path):
         assert writer.Write()
         return nestgrid.load(tmp_path / "x.htg", "number")
 
-    last = np.arange(16) == 15  # the last tree
-    whole = grid_of()
-    assert np.isfinite(whole.probe([[2.5, 2.5, 2.5]])).all()
-    for field in (grid_of(mask=last), grid_of(ghosts=last.astype(np.uint8))):
-        assert np.isnan(field.probe([[2.5, 2.5, 2.5]])).all()
-        assert np.isfinite(field.probe([[0.5, 0.5, 2.5]])).all()
-    with pytest.raises(nestgrid.IoError, match="divided by 3 in dimension 3: trees by two are read"):
-        grid_of(3)
+    for factor in (2, 3):
+        last = np.arange(8 + factor**3) == 7 + factor**3  # the last tree
+        assert np.isfinite(grid_of(factor).probe([[2.5, 2.5, 2.5]])).all()
+        for field in (grid_of(factor, mask=last), grid_of(factor, ghosts=last.astype(np.uint8))):
+            assert np.isnan(field.probe([[2.5, 2.5, 2.5]])).all()
+            assert np.isfinite(field.probe([[0.5, 0.5, 2.5]])).all()
+
+
+@pytest.mark.parametrize("name", ["trees.htg", "thirds.htg", "uneven.htg"])
+def test_trees_of_all_kinds(amr_files, name):
+    """Linear functions are reproduced, surfaces are closed, of files and of their pickles."""
+    for prefix, dimension in (("", 3), ("plane_", 2)):
+        place = nestgrid.load(amr_files / (prefix + name), "plac")
+        points = np.random.default_rng(1).uniform(0, 1, (50, dimension))
+        np.testing.assert_allclose(place.probe(points), points[:, 0], atol=1e-12)
+    field = nestgrid.load(amr_files / name, "dist")
+    for threshold in (0, 0.005, 0.05):
+        surface = field.isosurface(0, threshold)
+        assert set(edges(surface).values()) == {2}, threshold
+    area = field.isosurface(0).report()["area"]
+    assert 1.08 < area < 1.135  # 0.36 pi
+    np.testing.assert_array_equal(
+        pickle.loads(pickle.dumps(field)).isosurface(0).vertices, field.isosurface(0).vertices
+    )
+
+
+@pytest.mark.parametrize("name", ["trees.htg", "thirds.htg", "uneven.htg"])
+def test_trees_are_frames(amr_files, name):
+    """At the time of a file they have its surface, between two that of the mean."""
+    paths = [amr_files / name, amr_files / f"later_{name}"]
+    frames = nestgrid.load(paths, "dist")
+    assert frames.times == [0, 1] and frames.name == "dist" and "leaves of dimension 3" in repr(frames)
+    alone = [nestgrid.load(path, "dist") for path in paths]
+    points = np.random.default_rng(1).uniform(0, 1, (50, 3))
+    mean = sum(field.probe(points) for field in alone) / 2
+    for each in (frames, pickle.loads(pickle.dumps(frames))):
+        for t, field in enumerate(alone):
+            np.testing.assert_array_equal(each.at(t).isosurface(0).vertices, field.isosurface(0).vertices)
+        np.testing.assert_allclose(each.at(0.5).probe(points), mean, atol=1e-12)
+        assert set(edges(each.at(0.5).isosurface(0)).values()) == {2}
+    assert nestgrid.load(paths, "dist", times=[2, 10]).times == [2, 10]
+    with pytest.raises(nestgrid.InvalidInput, match="times has 3, not one for each of the 2 files"):
+        nestgrid.load(paths, "dist", times=[0, 1, 2])
+    with pytest.raises(nestgrid.InvalidInput, match="ascend"):
+        nestgrid.load(paths, "dist", times=[1, 0])
+    for other in {"trees.htg", "thirds.htg", "uneven.htg", "plane_trees.htg"} - {name}:
+        with pytest.raises(nestgrid.InvalidInput, match=f"{other}' has another grid than '.*{name}'"):
+            nestgrid.load([paths[0], amr_files / other], "dist")
+    with pytest.raises(nestgrid.InvalidInput, match="amr.vthb' is of another format than"):
+        nestgrid.load([paths[0], amr_files / "amr.vthb"], "dist")
+
+
+def write_source(path, values, factor=3, descriptor="R.. | " + 27 * ".", missing=()):
+    """The trees of VTK's own source, with values of their cells at the centres."""
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk
+
+    source = vtk.vtkHyperTreeGridSource()
+    source.SetDimensions([4, 2, 2])
+    source.SetGridScale(1, 1, 1)
+    source.SetBranchFactor(factor)
+    source.SetMaxDepth(2)
+    source.SetDescriptor(descriptor)
+    source.Update()
+    grid = source.GetHyperTreeGridOutput()
+    numbers = np.full(grid.GetGlobalNodeIndexMax() + 1, np.nan)
+    cursor = vtk.vtkHyperTreeGridNonOrientedGeometryCursor()
+
+    def visit():
+        low, high = np.reshape(cursor_bounds(cursor), (3, 2)).T
+        numbers[cursor.GetGlobalNodeIndex()] = values(*(low + high) / 2)
+        if not cursor.IsLeaf():
+            for child in range(cursor.GetNumberOfChildren()):
+                cursor.ToChild(child)
+                visit()
+                cursor.ToParent()
+
+    for tree in range(3):
+        grid.InitializeNonOrientedGeometryCursor(cursor, tree)
+        visit()
+    numbers[list(missing)] = np.nan
+    array = numpy_to_vtk(numbers, deep=True)
+    array.SetName("value")
+    grid.GetCellData().Initialize()
+    grid.GetCellData().AddArray(array)
+    writer = vtk.vtkXMLHyperTreeGridWriter()
+    writer.SetDataModeToBinary()
+    writer.SetFileName(str(path))
+    writer.SetInputDataObject(grid)
+    assert writer.Write()
+
+
+def cursor_bounds(cursor):
+    bounds = [0.0] * 6
+    cursor.GetBounds(bounds)
+    return bounds
+
+
+def test_frames_of_trees_with_missing_cells(tmp_path):
+    """What has no value in one frame is drawn in none, and counts for nothing beside it."""
+    pytest.importorskip("vtkmodules.vtkIOXML")
+    write_source(tmp_path / "a.htg", lambda x, y, z: x)
+    write_source(tmp_path / "b.htg", lambda x, y, z: 2 * x, missing=[2])
+    points = [[0.1, 0.2, 0.3], [1.2, 0.5, 0.5], [1.8, 0.1, 0.9]]
+    a, b = (nestgrid.load(tmp_path / name) for name in ("a.htg", "b.htg"))
+    np.testing.assert_allclose(a.probe(points), [0.1, 1.2, 1.8], atol=1e-12)
+    frames = nestgrid.load([tmp_path / "a.htg", tmp_path / "b.htg"])
+    for t in (0, 0.5, 1):
+        np.testing.assert_allclose(frames.at(t).probe(points), (1 + t) * np.array([0.1, 1.2, 1.8]), atol=1e-12)
+        assert np.isnan(frames.at(t).probe([[2.5, 0.5, 0.5]])).all()
+    write_source(tmp_path / "c.htg", lambda x, y, z: math.inf)
+    with pytest.raises(nestgrid.InvalidInput, match=r"load\(\): .*c.htg: the value inf of leaf 0 is not"):
+        nestgrid.load([tmp_path / "a.htg", tmp_path / "c.htg"])
+    write_source(tmp_path / "d.htg", lambda x, y, z: x, descriptor="RR. | " + 54 * ".")
+    with pytest.raises(nestgrid.InvalidInput, match="d.htg' has another grid than"):
+        nestgrid.load([tmp_path / "a.htg", tmp_path / "d.htg"])
 
 
 @pytest.mark.parametrize("name", FORMATS)

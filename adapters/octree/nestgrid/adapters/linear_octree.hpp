@@ -6,6 +6,8 @@
 //
 // Invariants, checked once: the leaves of every tree are aligned to their level, sorted, and fill
 // the tree without gap or overlap. They may differ by any number of levels.
+// Trees may also be divided by three in each direction. Then nodes hang at thirds of edges, where
+// they are not looked for, so that a grid with changes of level must offer `constrained` itself.
 // A node is named by where it lies: inside a tree by the place in it, on the border of trees by the
 // coarse nodes around it and its weights, so that trees agree about it however they are turned.
 #pragma once
@@ -15,20 +17,26 @@
 #include <vector>
 
 #include <nestgrid/adapters/coarse_checks.hpp>
+#include <nestgrid/adapters/tree_rules.hpp>
 #include <nestgrid/optional.hpp>
-#include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {
 
 /// \tparam LeafType any struct with integers x, y, z (in two dimensions x, y) and level; a tree is
-///         2^max_level wide, its root has level 0
-template <int dim, class LeafType>
+///         factor^max_level wide, its root has level 0
+/// \tparam factor into how many parts elements are divided in each direction: 2 or 3
+template <int dim, class LeafType, int factor = 2>
 class LinearOctree {
+    static_assert((dim == 2 || dim == 3) && (factor == 2 || factor == 3));
+    static constexpr int power(int base) { return dim == 2 ? base * base : base * base * base; }
+
 public:
     static constexpr int dimension = dim;
     static constexpr int max_corners = 1 << dim;
-    static constexpr int max_new_nodes = dim == 2 ? 5 : 19;
-    static constexpr int max_children = 1 << dim;
+    static constexpr int max_new_nodes = power(factor + 1) - max_corners;
+    static constexpr int max_children = power(factor);
+    /// The levels that a tree may have at most, so that its finest cells have numbers.
+    static constexpr int most_levels = (factor == 2 ? 62 : 39) / dim;
     static constexpr Shape only_shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
 
     struct Element {
@@ -44,7 +52,7 @@ public:
         : coarse_{std::move(coarse)},
           trees_{std::move(trees)},
           max_level_{max_level},
-          rule_{&dyadic_rule(dim == 2 ? Shape::quadrilateral : Shape::hexahedron)} {
+          rule_{&detail::rule_of_trees<dim, factor>()} {
         CoarseGrid oriented = coarse_;
         check_and_orient(oriented);
         for (std::size_t t = 0; t < coarse_.element_count(); ++t) {
@@ -56,7 +64,7 @@ public:
             throw InvalidInput("there are " + std::to_string(trees_.size()) + " trees, but " +
                                std::to_string(coarse_.element_count()) + " coarse elements");
         }
-        if (max_level < 0 || max_level * dim > 62) {
+        if (max_level < 0 || max_level > most_levels) {
             throw InvalidInput("trees of " + std::to_string(max_level) + " levels");
         }
         first_.push_back(0);
@@ -87,8 +95,9 @@ public:
     void children(const Element& e, std::span<Element> out) const {
         const std::size_t tree = tree_of(e);
         std::size_t first = e.first;
-        for (std::size_t c = 0; c < max_children; ++c) {
-            const std::size_t last = c + 1 == max_children ? e.last : bound(tree, e, first, c + 1);
+        for (std::size_t c = 0; c < static_cast<std::size_t>(max_children); ++c) {
+            const bool is_last = c + 1 == static_cast<std::size_t>(max_children);
+            const std::size_t last = is_last ? e.last : bound(tree, e, first, c + 1);
             out[c] = {first, last, static_cast<std::uint8_t>(e.level + 1)};
             first = last;
         }
@@ -97,7 +106,7 @@ public:
     void corner_keys(const Element& e, std::span<NodeKey> out) const {
         const std::size_t tree = tree_of(e);
         const Place low = place_of(tree, e);
-        const std::uint64_t width = std::uint64_t{1} << (max_level_ - e.level);
+        const std::uint64_t width = cells_in(max_level_ - e.level);
         for (std::size_t k = 0; k < out.size(); ++k) {
             Place node = low;
             for (std::size_t d = 0; d < node.size(); ++d) node[d] += (k >> d & 1U) * width;
@@ -107,13 +116,13 @@ public:
     void new_keys(const Element& e, std::span<NodeKey> out) const {
         const std::size_t tree = tree_of(e);
         const Place low = place_of(tree, e);
-        const std::uint64_t half = std::uint64_t{1} << (max_level_ - e.level - 1);
+        const std::uint64_t part = cells_in(max_level_ - e.level - 1);
         for (std::size_t n = 0; n < out.size(); ++n) {
-            const auto [child, corner] = rule_->new_corner[n];
+            std::size_t child = rule_->new_corner[n].child;
+            const std::size_t corner = rule_->new_corner[n].corner;
             Place node = low;
-            for (std::size_t d = 0; d < node.size(); ++d) {
-                node[d] +=
-                    ((std::size_t{child} >> d & 1U) + (std::size_t{corner} >> d & 1U)) * half;
+            for (std::size_t d = 0; d < node.size(); ++d, child /= factor) {
+                node[d] += (child % factor + (corner >> d & 1U)) * part;
             }
             out[n] = key(tree, node);
         }
@@ -128,12 +137,24 @@ public:
         if (corner + 1 == max_corners) e.first = e.last - 1;
         if (corner == 0 || e.last - e.first == 1) return e.first;
         const std::size_t tree = tree_of(e);
+        std::size_t child = 0;
+        for (std::size_t d = static_cast<std::size_t>(dim); d-- > 0;) {
+            child = factor * child + ((corner >> d & 1U) != 0 ? factor - 1 : 0);
+        }
         while (e.last - e.first > 1) {
-            e.first = bound(tree, e, e.first, corner);
-            e.last = bound(tree, e, e.first, corner + 1);
+            e.first = bound(tree, e, e.first, child);
+            e.last = bound(tree, e, e.first, child + 1);
             ++e.level;
         }
         return e.first;
+    }
+
+    /// Finest cells along a side of an element that is divided so many times.
+    static constexpr std::uint64_t cells_in(int levels) {
+        if constexpr (factor == 2) return std::uint64_t{1} << static_cast<unsigned>(levels);
+        std::uint64_t cells = 1;
+        for (; levels > 0; --levels) cells *= factor;
+        return cells;
     }
 
 private:
@@ -147,7 +168,7 @@ private:
         return place;
     }
     NodeKey key(std::size_t tree, const Place& node) const {
-        const std::uint64_t width = std::uint64_t{1} << max_level_;
+        const std::uint64_t width = cells_in(max_level_);
         bool is_inside = true;
         NodeKey inside = detail::mix(tree);
         for (const std::uint64_t x : node) {
@@ -173,10 +194,13 @@ private:
         if constexpr (dim == 3) return static_cast<std::uint64_t>(leaf.z);
         return 0;
     }
-    static std::size_t child_of(const LeafType& leaf, unsigned bit) {
+    /// In which child of an element a leaf lies.
+    /// \param width of the children, which is a power of the factor
+    static std::size_t child_of(const LeafType& leaf, std::uint64_t width) {
         std::size_t number = 0;
-        for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
-            number |= static_cast<std::size_t>(coordinate(leaf, d) >> bit & 1U) << d;
+        for (std::size_t d = static_cast<std::size_t>(dim); d-- > 0;) {
+            const std::uint64_t x = coordinate(leaf, d);
+            number = factor * number + (factor == 2 ? (x & width) != 0 : x / width % factor);
         }
         return number;
     }
@@ -187,11 +211,11 @@ private:
     }
     /// The first leaf of an element, from `low` on, in child `c` or a later one.
     std::size_t bound(std::size_t tree, const Element& e, std::size_t low, std::size_t c) const {
-        const auto bit = static_cast<unsigned>(max_level_ - e.level - 1);
+        const std::uint64_t width = cells_in(max_level_ - e.level - 1);
         const auto leaves = trees_[tree].subspan(low - first_[tree], e.last - low);
         const auto at =
             std::partition_point(leaves.begin(), leaves.end(),
-                                 [&](const LeafType& leaf) { return child_of(leaf, bit) < c; });
+                                 [&](const LeafType& leaf) { return child_of(leaf, width) < c; });
         return low + static_cast<std::size_t>(at - leaves.begin());
     }
 
@@ -208,23 +232,22 @@ private:
                 fail("has the level " + std::to_string(level) + ", not 0 to " +
                      std::to_string(max_level_));
             }
-            const auto below = static_cast<unsigned>(max_level_ - level);
-            std::uint64_t place = 0;
+            const int below = max_level_ - static_cast<int>(level);
             for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
                 const std::uint64_t x = coordinate(leaf, d);
-                if (x >> static_cast<unsigned>(max_level_) != 0) fail("lies outside its tree");
-                if ((x & ((std::uint64_t{1} << below) - 1)) != 0) {
-                    fail("is not aligned to its level");
-                }
-                for (unsigned b = 0; b < static_cast<unsigned>(max_level_); ++b) {
-                    place |= (x >> b & 1U) << (b * static_cast<unsigned>(dim) + d);
-                }
+                if (x >= cells_in(max_level_)) fail("lies outside its tree");
+                if (x % cells_in(below) != 0) fail("is not aligned to its level");
+            }
+            std::uint64_t place = 0;
+            for (std::uint64_t width = cells_in(max_level_); width > 1;) {
+                width /= factor;
+                place = place * static_cast<std::uint64_t>(max_children) + child_of(leaf, width);
             }
             if (place < expected) fail("overlaps the one before it, or they are not sorted");
             if (place > expected) fail("leaves a gap before it");
-            expected += std::uint64_t{1} << (static_cast<unsigned>(dim) * below);
+            expected += cells_in(dim * below);
         }
-        if (expected != std::uint64_t{1} << static_cast<unsigned>(dim * max_level_)) {
+        if (expected != cells_in(dim * max_level_)) {
             throw InvalidInput("the leaves of tree " + std::to_string(t) + " do not fill it");
         }
     }
@@ -271,7 +294,7 @@ public:
     }
     NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
         const Rule& rule = *grid_->split(e);
-        std::array<Element, corners_> children;
+        std::array<Element, static_cast<std::size_t>(Grid::max_children)> children;
         grid_->children(e, children);
         for (std::size_t k = 0; k < rule.new_corner.size(); ++k) {
             if ((which >> k & 1U) == 0) continue;

@@ -82,8 +82,8 @@ def _volume(image: vtkImageData, array: vtkDataArray) -> nestgrid.Volume:
 
 
 def _octree(grid: vtkHyperTreeGrid, array: vtkDataArray) -> nestgrid.Octree:
-    if grid.GetDimension() != 3 or grid.GetBranchFactor() != 2:
-        raise nestgrid.InvalidInput("hyper tree grids need dimension 3 and branch factor 2")
+    if grid.GetDimension() != 3:
+        raise nestgrid.InvalidInput("hyper tree grids need dimension 3")
     try:
         trees = trees_of(grid)
     except ValueError as error:
@@ -92,6 +92,7 @@ def _octree(grid: vtkHyperTreeGrid, array: vtkDataArray) -> nestgrid.Octree:
         trees.leaves,
         vtk_to_numpy(array)[trees.index],
         max_level=trees.max_level,
+        factor=trees.factor,
         coordinates=trees.coordinates,
         masked=trees.masked,
     )

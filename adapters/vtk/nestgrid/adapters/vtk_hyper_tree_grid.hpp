@@ -28,22 +28,14 @@
 #include <vtkHyperTreeGrid.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <nestgrid/adapters/tree_rules.hpp>
 #include <nestgrid/error.hpp>
 #include <nestgrid/optional.hpp>
-#include <nestgrid/standard_rules.hpp>
 
 namespace nestgrid {
 
 /// Whether cells are drawn that another process has, too.
 enum class GhostCells : std::uint8_t { hidden, shown };
-
-namespace detail {
-
-/// A quadrilateral or hexahedron divided into `factor` in each direction, children x fastest.
-template <int dim, int factor>
-const Rule& rule_of_trees();
-
-}  // namespace detail
 
 /// A hyper tree grid of dimension 2 or 3 and of branch factor 2 or 3. It must outlive this object,
 /// which must be made anew when the grid has changed: when trees were refined, when it has another
@@ -148,7 +140,6 @@ private:
             "the hyper tree grid has changed since its adapter was made: make another one");
     }
     Hidden read_mask(const Element& e, bool masked);
-    void find_shared_nodes();
 
     /// The steps in which item k lies from the first one of a lattice of so many along each side:
     /// corners, or children.
@@ -177,8 +168,7 @@ private:
     vtkHyperTreeGrid* grid_;
     GhostCells ghost_cells_;
     const Rule* rule_;
-    /// New nodes of an element that are also on each neighbour of its size, by steps to it.
-    std::array<NodeMask, static_cast<std::size_t>(power(3))> shared_{};
+    detail::NodesOfTrees<dim, factor> nodes_;
     int depth_ = 0;
     std::array<std::size_t, 3> axis_{};  // directions in which there is more than one point
     std::array<std::vector<double>, 3> coordinates_;
@@ -189,63 +179,6 @@ private:
     vtkUnsignedCharArray* ghosts_ = nullptr;  // where there are any
     std::vector<Hidden> hidden_;              // by index; empty without a mask and ghosts
 };
-
-namespace detail {
-
-/// Nodes are those of a lattice of thirds, each a mean of the corners around it.
-inline Rule make_ternary_rule(Shape shape, int dim) {
-    constexpr int side = 4;  // nodes along an edge
-    const int corners = 1 << dim;
-    const auto digit = [](int number, int base, int d) {
-        for (; d > 0; --d) number /= base;
-        return number % base;
-    };
-    const int nodes = dim == 2 ? 16 : 64;
-    std::vector<std::uint8_t> number(static_cast<std::size_t>(nodes));  // in the rule, by place
-    std::vector<Stencil> stencils;
-    for (int place = 0; place < nodes; ++place) {
-        Stencil stencil;
-        for (int k = 0; k < corners; ++k) {
-            int weight = 1;
-            for (int d = 0; d < dim; ++d) {
-                const int at = digit(place, side, d);
-                weight *= (k >> d & 1) != 0 ? at : 3 - at;
-            }
-            if (weight == 0) continue;
-            stencil.parent[stencil.count] = static_cast<std::uint8_t>(k);
-            stencil.weight[stencil.count++] = weight / (dim == 2 ? 9.0 : 27.0);
-        }
-        const bool is_corner = stencil.count == 1;
-        number[static_cast<std::size_t>(place)] =
-            is_corner ? stencil.parent[0]
-                      : static_cast<std::uint8_t>(corners + static_cast<int>(stencils.size()));
-        if (!is_corner) stencils.push_back(stencil);
-    }
-    std::vector<Child> children;
-    for (int c = 0; c < (dim == 2 ? 9 : 27); ++c) {
-        Child child{shape, {}, 1, {}};
-        for (int k = 0; k < corners; ++k) {
-            int place = 0;
-            for (int d = dim; d-- > 0;) place = side * place + digit(c, 3, d) + (k >> d & 1);
-            child.corner[static_cast<std::size_t>(k)] = number[static_cast<std::size_t>(place)];
-        }
-        children.push_back(child);
-    }
-    return make_rule("thirds", shape, std::move(stencils), std::move(children));
-}
-
-template <int dim, int factor>
-const Rule& rule_of_trees() {
-    constexpr Shape shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
-    if constexpr (factor == 2) {
-        return dyadic_rule(shape);
-    } else {
-        static const Rule rule = make_ternary_rule(shape, dim);
-        return rule;
-    }
-}
-
-}  // namespace detail
 
 template <int dim, int factor>
 HyperTreeGrid<dim, factor>::HyperTreeGrid(vtkHyperTreeGrid& grid, GhostCells ghosts)
@@ -300,7 +233,6 @@ HyperTreeGrid<dim, factor>::HyperTreeGrid(vtkHyperTreeGrid& grid, GhostCells gho
         hidden_.resize(static_cast<std::size_t>(cells));
         for (const Tree& tree : trees_) read_mask({tree.tree, 0, 0, {}}, false);
     }
-    find_shared_nodes();
     epoch_ = epoch();
 }
 
@@ -345,37 +277,14 @@ bool HyperTreeGrid<dim, factor>::is_undivided(const Place& place, int level) con
 
 template <int dim, int factor>
 NodeMask HyperTreeGrid<dim, factor>::constrained(const Element& e) const {
-    NodeMask hanging = 0;
-    for (std::size_t s = 0; s < shared_.size(); ++s) {
-        if ((shared_[s] & ~hanging) == 0) continue;
-        Place beside = step(e.place, s, 3);
-        bool is_inside = true;
+    return nodes_.hanging([&](const std::array<int, 3>& steps) {
+        Place beside = e.place;
         for (std::size_t a = 0; a < dim; ++a) {
-            is_inside = is_inside && beside[axis_[a]] > 0;
-            --beside[axis_[a]];
+            if (steps[a] < 0 && beside[axis_[a]] == 0) return false;
+            beside[axis_[a]] += static_cast<std::uint32_t>(steps[a]);
         }
-        if (is_inside && is_undivided(beside, e.level)) hanging |= shared_[s];
-    }
-    return hanging;
-}
-
-template <int dim, int factor>
-void HyperTreeGrid<dim, factor>::find_shared_nodes() {
-    for (std::size_t s = 0; s < shared_.size(); ++s) {
-        if (s == shared_.size() / 2) continue;  // the element itself
-        for (std::size_t n = 0; n < static_cast<std::size_t>(max_new_nodes); ++n) {
-            std::size_t child = rule_->new_corner[n].child;
-            std::size_t side = s;
-            bool is_shared = true;
-            for (std::size_t a = 0; a < dim; ++a) {
-                const std::size_t at = child % factor + (rule_->new_corner[n].corner >> a & 1U);
-                is_shared = is_shared && (side % 3 == 1 || at == (side % 3 == 0 ? 0 : factor));
-                child /= factor;
-                side /= 3;
-            }
-            if (is_shared) shared_[s] |= NodeMask{1} << n;
-        }
-    }
+        return is_undivided(beside, e.level);
+    });
 }
 
 template <int dim, int factor>
