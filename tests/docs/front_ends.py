@@ -32,21 +32,21 @@ TABLE = {
     "What is drawn": {
         "an isosurface": "isosurface nestgrid_isosurface_with isosurface isovalue isosurface IsosurfaceSource "
         "NestgridIsosurface",
-        "several in one walk": "isosurfaces a a a isosurfaces a a",
+        "several in one walk": "isosurfaces a a a isosurfaces a MoreIsovalues",
         "a series of them": "IsosurfaceSeries a a a a a a",
         "a band between two": "isoband nestgrid_isoband band a isoband IsobandSource NestgridBand",
         "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",
         "by a sphere, a cylinder": "Sphere nestgrid_slice_along --sphere a sphere SetCutFunction Shape",
         "by any function": "LevelFunction nestgrid_slice_along --function a a SetCutFunction a",
-        "isolines in the plane": "isolines nestgrid_isolines isolines d isolines IsolinesSource a",
+        "isolines in the plane": "isolines nestgrid_isolines isolines d isolines IsolinesSource NestgridIsolines",
         "isolines on a surface": "surface_isolines nestgrid_surface_isolines --on-surface a isolines b b",
         "a height field, a shading": "height_field nestgrid_height_field height d height_field "
-        "HeightFieldSource a",
+        "HeightFieldSource NestgridHeightField",
         "the boundary of the domain": "boundary_surface nestgrid_boundary_surface boundary a boundary BoundarySource "
         "NestgridBoundary",
         "data that jump": "DiscontinuousData a c c c a c",
         "values at points": "probe nestgrid_probe probe a probe b b",
-        "edges of elements": "outlines elements --outlines outlines outlines a a",
+        "edges of elements": "outlines elements --outlines outlines outlines a Outlines",
         "cracks, area, volume": "surface_report f i a report b b",
         "measured errors": "measure_error nestgrid_measure --measure a measure a a",
     },

@@ -261,7 +261,7 @@ def _volume(
 ) -> Volume:
     flat = [d for d in range(3) if array.shape[d] == 1]
     if len(flat) == 1:
-        return _plane(array, spacing, origin, direction, flat[0], name, unit)
+        return plane_of(array, spacing, origin, direction, flat[0], name, unit)
     if min(array.shape) < 2:
         counts = " x ".join(str(n) for n in array.shape)
         raise InvalidInput(
@@ -270,14 +270,14 @@ def _volume(
     return Volume(array, spacing, origin, direction=direction, name=name, unit=unit)
 
 
-def _plane(
+def plane_of(
     array: np.ndarray,
     spacing: Numbers,
     origin: Numbers,
     direction: Any,
     across: int,
-    name: str,
-    unit: str,
+    name: str = "",
+    unit: str = "",
 ) -> Volume:
     """A volume with one sample along an axis, without that axis, where it lies in space."""
     along = [d for d in range(3) if d != across]

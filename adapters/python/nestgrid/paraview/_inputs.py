@@ -15,6 +15,7 @@ from vtkmodules.vtkCommonDataModel import (
 
 import nestgrid
 
+from .._load import plane_of
 from .._vtk_amr import boxes_of
 from .._vtk_trees import trees_of
 
@@ -23,7 +24,9 @@ def field_of(data: vtkDataObject, array: vtkDataArray | None) -> nestgrid.Field:
     """The field of image data or of an unstructured grid at points, or of a hyper tree grid or an
     overlapping AMR in cells. Image data and AMR are not copied.
 
-    Raises InvalidInput where the data are not of dimension 3 or the array does not fit.
+    What has one sample along an axis is a field in a plane, as boxes of constant z are.
+
+    Raises InvalidInput where the data are not of dimension 2 or 3 or the array does not fit.
     """
     if array is None:
         raise nestgrid.InvalidInput("the input has no array with the chosen name")
@@ -73,12 +76,14 @@ def _volume(image: vtkImageData, array: vtkDataArray) -> nestgrid.Volume:
     origin = [0.0, 0.0, 0.0]
     image.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], origin)
     matrix = image.GetDirectionMatrix()
-    return nestgrid.Volume(
-        samples.reshape(image.GetDimensions(), order="F"),
-        image.GetSpacing(),
-        origin,
-        direction=[[matrix.GetElement(r, c) for c in range(3)] for r in range(3)],
-    )
+    place = {
+        "array": samples.reshape(image.GetDimensions(), order="F"),
+        "spacing": image.GetSpacing(),
+        "origin": origin,
+        "direction": [[matrix.GetElement(r, c) for c in range(3)] for r in range(3)],
+    }
+    flat = [d for d in range(3) if image.GetDimensions()[d] == 1]
+    return plane_of(**place, across=flat[0]) if len(flat) == 1 else nestgrid.Volume(**place)
 
 
 def _octree(grid: vtkHyperTreeGrid, array: vtkDataArray) -> nestgrid.Octree:

@@ -136,6 +136,140 @@ def check_where_and_how():
     same(fetch(boundary), volume.boundary(error=5, collapse=True))
 
 
+def check_several_isovalues():
+    """The surfaces of several values, which the cell array "value" tells apart."""
+    wavelet = pv.Wavelet(WholeExtent=[-10, 10, -8, 8, -6, 6])
+    image = fetch(wavelet)
+    samples = vtk_to_numpy(image.GetPointData().GetArray("RTData"))
+    volume = nestgrid.Volume(
+        samples.reshape(image.GetDimensions(), order="F"), origin=(-10, -8, -6)
+    )
+    pv.SetActiveSource(wavelet)
+    filter = pv.NestgridIsosurface(Input=wavelet, Isovalue=157, MoreIsovalues=[200, 120])
+    finest = {"threshold": 5, "cuts": "finest", "normals": False}
+    for set_up, options in (
+        ({"Threshold": 5}, {"threshold": 5}),
+        ({"Error": 20, "Cap": 1}, {"error": 20, "cap": True}),
+        ({"Error": 0, "Cap": 0, "Cuts": "finest", "Normals": 0}, finest),
+    ):
+        for name, value in set_up.items():
+            setattr(filter, name, value)
+        data = fetch(filter)
+        values = vtk_to_numpy(data.GetCellData().GetArray("value"))
+        points = vtk_to_numpy(data.GetPoints().GetData())
+        corners = points[vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
+        surfaces = volume.isosurfaces([157, 200, 120], **options)
+        assert len(values) == sum(len(each.triangles) for each in surfaces)
+        for value, surface in zip([157, 200, 120], surfaces):
+            assert len(surface.triangles) > 0
+            expected = surface.vertices[surface.triangles]
+            np.testing.assert_array_equal(corners[values == value], expected)
+        assert (data.GetPointData().GetNormals() is None) == ("normals" in options)
+    for name, value in (("Collapse", 1), ("MoreIsovalues", [200, 157])):
+        before = getattr(filter, name)
+        setattr(filter, name, value)
+        assert fetch(filter).GetNumberOfCells() == 0, f"{name} is refused"
+        setattr(filter, name, before)
+    filter.Error, filter.MaxTriangles = 0, 900
+    assert fetch(filter).GetNumberOfCells() == 0, "a number of triangles is refused"
+
+
+def check_outlines():
+    wavelet = pv.Wavelet(WholeExtent=[-10, 10, -8, 8, -6, 6])
+    image = fetch(wavelet)
+    samples = vtk_to_numpy(image.GetPointData().GetArray("RTData"))
+    volume = nestgrid.Volume(
+        samples.reshape(image.GetDimensions(), order="F"), origin=(-10, -8, -6)
+    )
+
+    def are_outlines(filter, surface):
+        data, expected = fetch(filter), surface.outlines()
+        assert len(expected.segments) > 0 == data.GetNumberOfPolys()
+        np.testing.assert_array_equal(
+            vtk_to_numpy(data.GetPoints().GetData()), expected.vertices
+        )
+        np.testing.assert_array_equal(
+            vtk_to_numpy(data.GetLines().GetConnectivityArray()), expected.segments.ravel()
+        )
+
+    pv.SetActiveSource(wavelet)
+    filter = pv.NestgridIsosurface(Input=wavelet, Isovalue=157, Threshold=20, Outlines=1)
+    are_outlines(filter, volume.isosurface(157, 20, elements=True))
+    filter.MoreIsovalues = [200]
+    values = vtk_to_numpy(fetch(filter).GetCellData().GetArray("value"))
+    counts = [
+        len(each.outlines().segments)
+        for each in volume.isosurfaces([157, 200], 20, elements=True)
+    ]
+    assert [(values == value).sum() for value in (157, 200)] == counts
+    pv.SetActiveSource(wavelet)
+    band = pv.NestgridBand(Input=wavelet, Band=[150, 200], Threshold=5, Outlines=1)
+    are_outlines(band, volume.isoband(150, 200, 5, elements=True))
+    slice = pv.NestgridSlice(Input=wavelet, Threshold=20, Outlines=1)
+    slice.Origin, slice.Normal = [1, 0, 0], [1, 1, 0]
+    are_outlines(slice, volume.slice(plane=((1, 0, 0), (1, 1, 0)), threshold=20, elements=True))
+    boundary = pv.NestgridBoundary(Input=wavelet, Error=5, Outlines=1)
+    are_outlines(boundary, volume.boundary(error=5, elements=True))
+
+
+def same_lines(data, lines):
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    np.testing.assert_array_equal(points, lines.vertices)
+    np.testing.assert_array_equal(
+        vtk_to_numpy(data.GetLines().GetConnectivityArray()), lines.points
+    )
+    np.testing.assert_array_equal(
+        vtk_to_numpy(data.GetCellData().GetArray("value")), lines.values
+    )
+
+
+def check_planes():
+    """Isolines and height fields of an image in a plane."""
+    wavelet = pv.Wavelet(WholeExtent=[-10, 10, -8, 8, 4, 4])
+    image = fetch(wavelet)
+    samples = vtk_to_numpy(image.GetPointData().GetArray("RTData"))
+    least, greatest = samples.min(), samples.max()
+    low, high = least + 0.3 * (greatest - least), least + 0.7 * (greatest - least)
+    error = 0.05 * (greatest - least)
+    plane = nestgrid.Volume(
+        samples.reshape(image.GetDimensions()[:2], order="F"),
+        origin=(-10, -8, 4),
+        direction=((1, 0), (0, 1), (0, 0)),
+    )
+    lines = pv.NestgridIsolines(Input=wavelet)
+    assert len(lines.Values) == 1 and least < lines.Values[0] < greatest, "within the range"
+    lines.Values = [low, high]
+    same_lines(fetch(lines), plane.isolines([low, high]))
+    assert set(plane.isolines([low, high]).values) == {low, high}
+    lines.Values, lines.Threshold = [low], error / 2
+    same_lines(fetch(lines), plane.isolines(low, error / 2))
+    fewest = plane.isolines(low, max_segments=60)
+    lines.MaxSegments = 60
+    same_lines(fetch(lines), fewest)
+    lines.Error = error
+    same_lines(fetch(lines), plane.isolines(low, error=error))
+    assert 0 < len(fewest.points) <= 60 + len(fewest)
+    pv.SetActiveSource(wavelet)  # filters look for arrays there first
+    heights = pv.NestgridHeightField(Input=wavelet, Scale=0.1)
+    same(fetch(heights), plane.height_field(0.1))
+    heights.Scale, heights.Error = 0, error
+    data = fetch(heights)
+    same(data, plane.height_field(None, error=error))
+    assert data.GetBounds()[4:] == (4, 4) and data.GetPointData().GetArray("RTData") is not None
+    heights.Outlines = 1
+    edges = plane.height_field(None, error=error, elements=True).outlines()
+    assert fetch(heights).GetNumberOfLines() == len(edges.segments) > 0
+    heights.Outlines, heights.Collapse = 0, 1
+    fewer = plane.height_field(None, error=error, collapse=True)
+    same(fetch(heights), fewer)
+    assert len(fewer.triangles) < data.GetNumberOfPolys()
+    volume = pv.Wavelet(WholeExtent=[-5, 5, -5, 5, -5, 5])
+    volume.UpdatePipeline()
+    for filter in (pv.NestgridHeightField(Input=volume), pv.NestgridIsolines(Input=volume)):
+        assert fetch(filter).GetNumberOfCells() == 0, "a field in space is refused"
+    assert fetch(pv.NestgridIsosurface(Input=wavelet)).GetNumberOfCells() == 0
+
+
 def check_unstructured_grid():
     """Lagrange hexahedra of degree 3, read by ParaView."""
     grid = vtkUnstructuredGrid()
@@ -304,6 +438,9 @@ def check_state_and_picture():
 
 check_image_data()
 check_where_and_how()
+check_several_isovalues()
+check_outlines()
+check_planes()
 check_unstructured_grid()
 check_hyper_tree_grid()
 check_overlapping_amr()

@@ -1,13 +1,16 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plugin for ParaView: isosurfaces, bands, slices, boundaries, and a reader of .nestgrid files.
+"""The plugin for ParaView: isosurfaces, bands, slices, boundaries, isolines and height fields of
+data in a plane, and a reader of .nestgrid files.
 
 python -m nestgrid.paraview starts ParaView so that it finds this file.
 """
 from paraview import print_error
 from paraview.util.vtkAlgorithm import smproperty, smproxy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 import nestgrid
 from nestgrid.paraview._inputs import field_of
@@ -34,6 +37,14 @@ ISOVALUE = """
     </RequiredProperties>
   </ArrayRangeDomain>
   <Documentation>The value on the surface, in the units of the data.</Documentation>
+</DoubleVectorProperty>
+"""
+MORE_ISOVALUES = """
+<DoubleVectorProperty name="MoreIsovalues" command="AddMoreIsovalue"
+    clean_command="ClearMoreIsovalues" number_of_elements="0" number_of_elements_per_command="1"
+    repeat_command="1">
+  <Documentation>Others, whose surfaces are drawn in the same walk, at a threshold or within an
+  error: the cell array "value" tells the isovalue of each triangle.</Documentation>
 </DoubleVectorProperty>
 """
 PLANE = """
@@ -151,6 +162,14 @@ CUTS = """
   data have the value.</Documentation>
 </IntVectorProperty>
 """
+OUTLINES = """
+<IntVectorProperty name="Outlines" command="SetOutlines" number_of_elements="1" default_values="0"
+    panel_visibility="advanced">
+  <BooleanDomain name="bool"/>
+  <Documentation>In the place of the surface the edges that elements have on it, which show where
+  it is coarse and where fine.</Documentation>
+</IntVectorProperty>
+"""
 BLEND = """
 <DoubleVectorProperty name="Blend" command="SetBlend" number_of_elements="1" default_values="1"
     panel_visibility="advanced">
@@ -201,6 +220,32 @@ BAND = """
   <Documentation>The lower and the upper value, in the units of the data.</Documentation>
 </DoubleVectorProperty>
 """
+VALUES = """
+<DoubleVectorProperty name="Values" command="AddValue" clean_command="ClearValues"
+    number_of_elements="0" number_of_elements_per_command="1" repeat_command="1">
+  <ArrayRangeDomain name="scalar_range" default_mode="mid">
+    <RequiredProperties>
+      <Property name="Input" function="Input"/>
+      <Property name="Scalars" function="ArraySelection"/>
+    </RequiredProperties>
+  </ArrayRangeDomain>
+  <Documentation>The values on the lines, in the units of the data.</Documentation>
+</DoubleVectorProperty>
+"""
+MAX_SEGMENTS = """
+<IntVectorProperty name="MaxSegments" command="SetMaxTriangles" number_of_elements="1"
+    default_values="0">
+  <IntRangeDomain name="range" min="0"/>
+  <Documentation>Finds the least threshold at which all lines together have no more segments; 0 is
+  no limit. Goes before the threshold.</Documentation>
+</IntVectorProperty>
+"""
+SCALE = """
+<DoubleVectorProperty name="Scale" command="SetScale" number_of_elements="1" default_values="1">
+  <Documentation>Heights are the data times this, in units of length; 0: all lies in the
+  plane.</Documentation>
+</DoubleVectorProperty>
+"""
 SHAPE = """
 <IntVectorProperty name="Shape" command="SetShape" number_of_elements="1" default_values="0">
   <EnumerationDomain name="enum">
@@ -222,6 +267,7 @@ SHAPE = """
 </DoubleVectorProperty>
 """
 WHERE = (BLEND, LENS, REGION)
+OF_SURFACES = (OUTLINES, *WHERE)
 INPUT = """
 <InputProperty name="Input" command="SetInputConnection">
   <ProxyGroupDomain name="groups"><Group name="sources"/><Group name="filters"/></ProxyGroupDomain>
@@ -245,6 +291,29 @@ def properties(*texts):
     return decorate
 
 
+class Together:
+    """Surfaces of several values as one data set, each triangle of which tells its value."""
+
+    def __init__(self, values, surfaces):
+        self._parts = list(zip(values, surfaces))
+
+    def outlines(self):
+        return Together(*zip(*((value, each.outlines()) for value, each in self._parts)))
+
+    def to_vtk(self):
+        append = vtkAppendPolyData()
+        for value, surface in self._parts:
+            data = surface.to_vtk()
+            of_triangles = vtkDoubleArray()
+            of_triangles.SetName("value")
+            of_triangles.SetNumberOfValues(data.GetNumberOfCells())
+            of_triangles.Fill(value)
+            data.GetCellData().AddArray(of_triangles)
+            append.AddInputData(data)
+        append.Update()
+        return append.GetOutput()
+
+
 class Drawing(VTKPythonAlgorithmBase):
     """What filters and the reader have in common: options, and poly data as output."""
 
@@ -256,10 +325,14 @@ class Drawing(VTKPythonAlgorithmBase):
         self._collapse = {"collapse": False}
         self._distance_field = {"distance_field": False}
         self._isovalue = 0.0
+        self._more_isovalues = []
         self._band = {"values": (0.0, 1.0)}
+        self._values = []
+        self._scale = {"scale": 1.0}
         self._plane = {"origin": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0)}
         self._shape = {"kind": "plane", "radius": 1.0, "distance": 0.0}
         self._surface_options = {"normals": True, "cap": False, "at_nodes": False, "cuts": None}
+        self._elements = {"elements": False}  # told by triangles: for their outlines
         self._blend = {"blend": 1.0}
         self._lens = {"centre": (0.0, 0.0, 0.0), "radius": 0.0}
         self._region = {"bounds": (0.0,) * 6, "threshold": 0.0}
@@ -296,6 +369,14 @@ class Drawing(VTKPythonAlgorithmBase):
             self._isovalue = value
             self.Modified()
 
+    def AddMoreIsovalue(self, value):
+        self._more_isovalues.append(value)
+        self.Modified()
+
+    def ClearMoreIsovalues(self):
+        self._more_isovalues = []
+        self.Modified()
+
     def SetNormals(self, value):
         self._set(self._surface_options, "normals", bool(value))
 
@@ -307,6 +388,9 @@ class Drawing(VTKPythonAlgorithmBase):
 
     def SetCuts(self, number):
         self._set(self._surface_options, "cuts", (None, "linear", "finest")[number])
+
+    def SetOutlines(self, value):
+        self._set(self._elements, "elements", bool(value))
 
     def SetBlend(self, value):
         self._set(self._blend, "blend", value)
@@ -328,6 +412,17 @@ class Drawing(VTKPythonAlgorithmBase):
 
     def SetBand(self, low, high):
         self._set(self._band, "values", (low, high))
+
+    def AddValue(self, value):
+        self._values.append(value)
+        self.Modified()
+
+    def ClearValues(self):
+        self._values = []
+        self.Modified()
+
+    def SetScale(self, value):
+        self._set(self._scale, "scale", value)
 
     def SetShape(self, number):
         self._set(self._shape, "kind", ("plane", "sphere", "cylinder")[number])
@@ -369,8 +464,24 @@ class Drawing(VTKPythonAlgorithmBase):
             options.pop("indicator", None)
         return options
 
+    def isosurfaces(self, field):
+        values = [self._isovalue, *self._more_isovalues]
+        options = {**self.fineness(), **self._surface_options, **self._elements}
+        one = {"distance", "max_triangles"} & options.keys()
+        if one or self._collapse["collapse"]:
+            raise nestgrid.InvalidInput(
+                "several isovalues are drawn at a threshold or within an error: by a distance, "
+                "within a number of triangles or collapsed a single one is"
+            )
+        if len(set(values)) < len(values):
+            raise nestgrid.InvalidInput("the isovalues have a number twice")
+        options["cuts"] = options["cuts"] or "linear"
+        return Together(values, field.isosurfaces(values, **options))
+
     def isosurface(self, field):
-        options = {**self.fineness(), **self._surface_options}
+        if self._more_isovalues:
+            return self.isosurfaces(field)
+        options = {**self.fineness(), **self._surface_options, **self._elements}
         if "distance" in options:
             options.update(self._distance_field)
         if not options["cap"]:
@@ -379,13 +490,13 @@ class Drawing(VTKPythonAlgorithmBase):
 
     def band(self, field):
         options = self.fineness(without=("distance", "max_triangles"))
-        return field.isoband(
-            *self._band["values"], normals=self._surface_options["normals"], **options
-        )
+        options.update(self._elements, normals=self._surface_options["normals"])
+        return field.isoband(*self._band["values"], **options)
 
     def coloured(self):
         """How finely what has a place of its own is drawn."""
-        return {**self.collapsed(self.fineness(without=("distance",))), **self._colours}
+        options = self.collapsed(self.fineness(without=("distance",)))
+        return {**options, **self._colours, **self._elements}
 
     def slice(self, field):
         origin, normal, radius = *self._plane.values(), self._shape["radius"]
@@ -400,11 +511,23 @@ class Drawing(VTKPythonAlgorithmBase):
     def boundary(self, field):
         return field.boundary(**self.coloured())
 
+    def isolines(self, field):
+        options = self.fineness(without=("distance",))
+        if "max_triangles" in options:
+            options["max_segments"] = options.pop("max_triangles")
+        return field.isolines(self._values, **options)
+
+    def height_field(self, field):
+        options = {**self.collapsed(self.fineness(without=("distance",))), **self._elements}
+        return field.height_field(self._scale["scale"] or None, **options)
+
     def draw(self, outInfo, field_of_data, drawing, name):
         """Draws into the output. What the library refuses is empty, with a message in the log."""
         output = vtkPolyData.GetData(outInfo)
         try:
             surface = drawing(field_of_data())
+            if self._elements["elements"]:
+                surface = surface.outlines()
         except (nestgrid.InvalidInput, nestgrid.GridError, nestgrid.IoError) as error:
             print_error(f"nestgrid: {error}")
             return
@@ -462,8 +585,8 @@ class Filter(Drawing):
 
 @smproxy.filter(name="NestgridIsosurface", label="Nestgrid Isosurface")
 @properties(
-    INPUT, ARRAY, ISOVALUE, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE,
-    DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES, CUTS, *WHERE,
+    INPUT, ARRAY, ISOVALUE, MORE_ISOVALUES, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE,
+    DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES, CUTS, *OF_SURFACES,
 )
 class NestgridIsosurface(Filter):
     def RequestData(self, request, inInfo, outInfo):
@@ -473,7 +596,7 @@ class NestgridIsosurface(Filter):
 @smproxy.filter(name="NestgridSlice", label="Nestgrid Slice")
 @properties(
     INPUT, ARRAY, PLANE, NORMAL, PLANE_GROUP, SHAPE, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE,
-    INDICATOR, COLOUR_TOLERANCE, *WHERE,
+    INDICATOR, COLOUR_TOLERANCE, *OF_SURFACES,
 )
 class NestgridSlice(Filter):
     def RequestData(self, request, inInfo, outInfo):
@@ -481,7 +604,7 @@ class NestgridSlice(Filter):
 
 
 @smproxy.filter(name="NestgridBand", label="Nestgrid Band")
-@properties(INPUT, ARRAY, BAND, THRESHOLD, ERROR, INDICATOR, NORMALS, *WHERE)
+@properties(INPUT, ARRAY, BAND, THRESHOLD, ERROR, INDICATOR, NORMALS, *OF_SURFACES)
 class NestgridBand(Filter):
     def RequestData(self, request, inInfo, outInfo):
         return self.request(inInfo, outInfo, self.band)
@@ -489,11 +612,26 @@ class NestgridBand(Filter):
 
 @smproxy.filter(name="NestgridBoundary", label="Nestgrid Boundary")
 @properties(
-    INPUT, ARRAY, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, INDICATOR, COLOUR_TOLERANCE, *WHERE
+    INPUT, ARRAY, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, INDICATOR, COLOUR_TOLERANCE,
+    *OF_SURFACES,
 )
 class NestgridBoundary(Filter):
     def RequestData(self, request, inInfo, outInfo):
         return self.request(inInfo, outInfo, self.boundary)
+
+
+@smproxy.filter(name="NestgridIsolines", label="Nestgrid Isolines")
+@properties(INPUT, ARRAY, VALUES, THRESHOLD, MAX_SEGMENTS, ERROR, INDICATOR, *WHERE)
+class NestgridIsolines(Filter):
+    def RequestData(self, request, inInfo, outInfo):
+        return self.request(inInfo, outInfo, self.isolines)
+
+
+@smproxy.filter(name="NestgridHeightField", label="Nestgrid Height Field")
+@properties(INPUT, ARRAY, SCALE, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, INDICATOR, *OF_SURFACES)
+class NestgridHeightField(Filter):
+    def RequestData(self, request, inInfo, outInfo):
+        return self.request(inInfo, outInfo, self.height_field)
 
 
 FILE_NAMES = """
@@ -533,8 +671,9 @@ FREE_ISOVALUE = """
     file_description="nestgrid hierarchies",
 )
 @properties(
-    FILE_NAMES, FIELD_NAME, DRAW, FREE_ISOVALUE, FREE_PLANE, NORMAL, THRESHOLD, MAX_TRIANGLES,
-    ERROR, COLLAPSE, DISTANCE, DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES, CUTS, *WHERE,
+    FILE_NAMES, FIELD_NAME, DRAW, FREE_ISOVALUE, MORE_ISOVALUES, FREE_PLANE, NORMAL, THRESHOLD,
+    MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE, DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES,
+    CUTS, *OF_SURFACES,
 )
 class NestgridReader(Drawing):
     """Draws hierarchies from files; their elements are no data of VTK."""
