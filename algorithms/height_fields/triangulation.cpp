@@ -147,7 +147,9 @@ void Triangulation<Real>::extract(const View& view) {
         return surface_.forget_element();
     }
     surface_.add_extracted(1);
-    surface_.add_limited(view.inner_bounds().limited ? 1 : 0);
+    const InnerBounds inner = view.inner_bounds();
+    surface_.add_limited(inner.limited ? 1 : 0);
+    surface_.raise_position_bound(static_cast<double>(inner.position_error));
     raise_error_bound(view);
 }
 
@@ -175,6 +177,7 @@ void Triangulation<Real>::report(Shading& result) const {
     result.counts.extracted = surface_.extracted();
     result.counts.limited = surface_.limited();
     result.error_bound = surface_.error_bound();
+    result.position_bound = surface_.position_bound();
     result.edge_nodes = recorded_.size();
     result.edge_nodes_bytes = recorded_.memory_bytes();
     result.table_bytes = surface_.memory_bytes();

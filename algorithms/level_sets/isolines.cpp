@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <projection/by_criterion.hpp>
 
+#include <algorithm>
+
 #include <ranks/agreement.hpp>
 #include <ranks/join_lines.hpp>
 
@@ -27,6 +29,7 @@ Isolines isolines(const Hierarchy<Real>& hierarchy, std::span<const double> valu
         result.counts.extracted += drawn[i].counts.extracted;
         result.counts.limited += drawn[i].counts.limited;
         result.add_bounds(drawn[i]);
+        result.position_bound = std::max(result.position_bound, drawn[i].position_bound);
         result.cancelled = drawn[i].cancelled;
     }
     return result;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Data of higher degree within a number of triangles, in a lens, and between frames.
+// Data of higher degree within a number of triangles, in a lens, between frames, and
+// within an error of positions.
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/detail/round_up.hpp>
@@ -9,6 +10,7 @@
 #include <nestgrid/algorithms/frames.hpp>
 #include <nestgrid/algorithms/polynomial_values.hpp>
 
+#include "curved_world.hpp"
 #include "degree_world.hpp"
 #include "high_order_judge.hpp"
 #include "refusal.hpp"
@@ -271,6 +273,52 @@ TEST(HighOrderFrames, AtTheirTimesAreTheFramesThemselves) {
         return isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds())).surface;
     };
     expect_same(draw(alone), draw(same));
+}
+
+// Positions of curved leaves.
+
+/// A projection asks for an error of positions, and results tell what is kept of it: also shadings,
+/// whose boundary is then within it of that of the leaves, and isolines.
+TEST(HighOrderPositions, KeepTheErrorThatAProjectionAsksFor) {
+    const DrawnWorld<CurvedWorld<DegreeWorld<2>>, DegreeField<2>> drawn(
+        polynomial_bend(3, 0.1, 2), WorldOptions{.levels = 1}, square<2>);
+    const Prerolls prerolls(drawn.world, drawn.field);
+    const std::vector<double> isovalues{0.3, 0.8};
+    std::size_t triangles = 0;
+    std::size_t points = 0;
+    for (const double places : {0.1, 0.01, 0.001}) {
+        const Projection how{.threshold = 1, .indicator = "error", .position_error = places};
+        const auto shaded = shading(prerolls, how);
+        EXPECT_GT(shaded.position_bound, 0);
+        EXPECT_LE(shaded.position_bound, places * (1 + 1e-6));
+        EXPECT_GT(shaded.surface.simplices.size(), triangles);
+        triangles = shaded.surface.simplices.size();
+        double off = 0;
+        for (const auto& edge : shaded.surface.boundary) {
+            const Point middle =
+                0.5 * (shaded.surface.vertices[edge[0]] + shaded.surface.vertices[edge[1]]);
+            Point near = drawn.world.straight(middle);
+            const std::size_t side = std::abs(near[0]) > std::abs(near[1]) ? 0 : 1;
+            near[side] = std::copysign(1, near[side]);
+            off = std::max(off, norm(drawn.world.bent(near) - middle));
+        }
+        EXPECT_GT(off, 0);
+        EXPECT_LE(off, shaded.position_bound);
+        EXPECT_EQ(height_field(prerolls, 2, how).position_bound, shaded.position_bound);
+        const auto lines = isolines(prerolls, isovalues, how);
+        EXPECT_GT(lines.position_bound, 0);
+        EXPECT_LE(lines.position_bound, places * (1 + 1e-6));
+        EXPECT_GT(lines.lines.vertices.size(), points);
+        points = lines.lines.vertices.size();
+    }
+    expect_refused([&] { shading(prerolls, {.position_error = 0.1}); }, "drawn within an error");
+    for (const double none : {-1.0, std::numeric_limits<double>::infinity()}) {
+        expect_refused(
+            [&] {
+                shading(prerolls, {.threshold = 1, .indicator = "error", .position_error = none});
+            },
+            "the error of positions is not a finite number >= 0");
+    }
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 
+#include "closedness.hpp"
 #include "degree_world.hpp"
 #include "pyramid_functions.hpp"
 

@@ -19,6 +19,8 @@ struct Isolines : ErrorBounds {
     Polylines lines;
     TraversalCounts counts;  ///< elements are counted as extracted once for each value
     bool cancelled = false;  ///< by options.progress; the lines are then a part
+    /// On curved leaves, as of Isosurface.
+    double position_bound = 0;
 };
 
 /// The isolines of component 0 of a field of dimension 2, in one traversal. They end on the

@@ -32,6 +32,9 @@ struct Shading : ErrorBounds {
     Surface<3> surface;
     TraversalCounts counts;
     bool cancelled = false;  ///< by options.progress; the surface is then a part
+    /// On curved leaves (high_order.hpp), how far any point may be from its true place, before it
+    /// is lifted; in units of length.
+    double position_bound = 0;
     /// Names of vertices on distributed grids, for join_pieces().
     std::vector<std::array<NodeKey, 2>> names{};
     std::size_t edge_nodes = 0;        ///< nodes of finer sides that were recorded
