@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <vector>
 
 #include <dune/common/parallel/mpihelper.hh>
@@ -27,8 +28,9 @@ namespace {
 using Solver = Dune::YaspGrid<3>;
 
 // [equal]
-/// Gives all processes the greatest of their values at a vertex. A solver's vector often needs it:
-/// what two processes compute at a vertex may differ in its last bits.
+/// Gives all processes the greatest of their values at a vertex, overlap and ghosts, too, where the
+/// vector has no number yet. A solver's vector often needs it: what two processes compute at a
+/// vertex may differ in its last bits.
 class MakeEqual : public Dune::CommDataHandleIF<MakeEqual, double> {
 public:
     MakeEqual(const Solver& solver, std::vector<double>& values)
@@ -58,10 +60,11 @@ private:
 };
 // [equal]
 
-/// Waves around a point of the cube, at the vertices that this process sees.
+/// Waves around a point of the cube, at the vertices of the elements that this process owns.
 std::vector<double> wave(const Solver& solver) {
-    std::vector<double> values(static_cast<std::size_t>(solver.size(Solver::dimension)));
-    for (const auto& vertex : vertices(solver.leafGridView())) {
+    std::vector<double> values(static_cast<std::size_t>(solver.size(Solver::dimension)),
+                               std::numeric_limits<double>::lowest());
+    for (const auto& vertex : vertices(solver.leafGridView(), Dune::Partitions::interiorBorder)) {
         const auto x = vertex.geometry().corner(0) - Dune::FieldVector<double, 3>{0.5, 0.4, 0.45};
         values[solver.leafIndexSet().index(vertex)] = std::sin(14 * x.two_norm());
     }
