@@ -91,11 +91,20 @@ Point corner_of_all(Ranks& ranks, std::uint64_t first, const Point& corner) {
 
 }  // namespace engine
 
-std::shared_ptr<const engine::SharedNodes> detail::share_nodes(
-    const Hierarchy<float>& grid, Ranks& ranks, std::size_t most_sharers,
-    const std::function<std::uint64_t(std::size_t)>& place) {
+std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<float>& grid,
+                                                               Ranks& ranks,
+                                                               std::size_t most_sharers,
+                                                               const GridOnRanks& says) {
+    // All ranks find this out alone: those of another communicator are not to be waited for.
+    if (says.rank_count != 0 && says.rank_count != ranks.size()) {
+        throw InvalidInput("the communicator of the grid has " + std::to_string(says.rank_count) +
+                           " processes, that of the ranks " + std::to_string(ranks.size()) +
+                           ": they must be the same");
+    }
     std::vector<std::uint64_t> places;
-    for (std::size_t i = 0; place && i < grid.coarse_count(); ++i) places.push_back(place(i));
+    for (std::size_t i = 0; says.place && i < grid.coarse_count(); ++i) {
+        places.push_back(says.place(i));
+    }
     const auto shared =
         std::make_shared<engine::SharedNodes>(ranks, grid.epoch(), std::move(places));
     const engine::BeforeSharing before(grid, *shared);
@@ -106,7 +115,8 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(
                std::string(grid.offers(Feature::new_positions) ? ", curved, of dimension "
                                                                : ", of dimension ") +
                std::to_string(grid.facts().dimension) +
-               (place ? "" : ", " + std::to_string(grid.coarse_count()) + " coarse elements,") +
+               (says.place ? ""
+                           : ", " + std::to_string(grid.coarse_count()) + " coarse elements,") +
                " with nodes of more than " + std::to_string(most_sharers) + " ranks told to all";
     };
     std::uint64_t first = ~std::uint64_t{0};

@@ -141,6 +141,7 @@ JoinedPiece join(const Surface<dimension>& surface,
                  std::span<const std::array<NodeKey, 2>> vertex_names, const SharedNodes& shared) {
     Ranks& ranks = shared.ranks();
     JoinedPiece joined;
+    joined.ranks = ranks.size();
     std::vector<KeyPair> names;
     together(&shared, "the joined pieces of a surface", [&] {
         if (vertex_names.size() != surface.vertices.size()) {

@@ -106,6 +106,9 @@ int refuse(Ranks& ranks) {
     adapt(triangulation, 0);
     const Problem<2> problem(triangulation);
     const DealiiGrid<2> mine(triangulation);
+    dealii::Triangulation<2> whole;
+    cubes<2>(whole);
+    refuse_other_ranks(mine, DealiiGrid<2>(whole), ranks, refusals);
     const Distributed grid(mine, ranks);
     // deal.II gives a node between processes to the least of them.
     auto values = dealii_vector(problem, false);

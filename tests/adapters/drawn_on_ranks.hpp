@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <nestgrid/adapters/mpi.hpp>
 #include <nestgrid/algorithms/distributed.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/probe.hpp>
@@ -181,6 +182,29 @@ public:
 private:
     Ranks* ranks_;
 };
+
+/// Ranks of another communicator than the grid's are refused before they exchange anything, each
+/// process alone.
+/// \param mine of all processes
+/// \param alone of this process
+template <class AnyGrid>
+void refuse_other_ranks(const AnyGrid& mine, const AnyGrid& alone, Ranks& all, Refusals& refusals) {
+    const auto expect = [&](const AnyGrid& grid, int processes, Ranks& ranks) {
+        if (processes == ranks.size()) return;
+        refusals.expect<InvalidInput>(
+            "the communicator of the grid has " + std::to_string(processes) +
+                " processes, that of the ranks " + std::to_string(ranks.size()) + ": ",
+            [&] { const Distributed on_ranks(grid, ranks); });
+    };
+    MPI_Comm every_second = MPI_COMM_NULL;
+    MPI_Comm_split(MPI_COMM_WORLD, all.rank() % 2, 0, &every_second);
+    for (const MPI_Comm communicator : {MPI_COMM_SELF, every_second}) {
+        MpiRanks fewer(communicator);
+        expect(mine, all.size(), fewer);
+    }
+    MPI_Comm_free(&every_second);
+    expect(alone, 1, all);
+}
 
 /// The status of a program of which this rank has found so much wrong.
 inline int status_of_all(Ranks& ranks, int wrong) {

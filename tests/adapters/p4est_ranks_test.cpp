@@ -303,6 +303,19 @@ int end_together(Ranks& ranks) {
     return refusals.wrong;
 }
 
+/// Ranks of another communicator than the forest's.
+int refuse_other_ranks(Ranks& ranks) {
+    p8est_connectivity_t* const cube = p8est_connectivity_new_unitcube();
+    Refusals refusals(ranks);
+    {
+        const Forest parts(MPI_COMM_WORLD, cube, 2, false);
+        const Forest whole(MPI_COMM_SELF, cube, 2, false);
+        nestgrid_test::refuse_other_ranks(Grid(parts.get()), Grid(whole.get()), ranks, refusals);
+    }
+    p8est_connectivity_destroy(cube);
+    return refusals.wrong;
+}
+
 /// A field with which the last rank dies in a step: 0 values, 1 preroll, 2 surface.
 struct DyingField : KeyedField {
     DyingField(const Grid& of, const int* now, int in, void (*how)())
@@ -335,7 +348,8 @@ void die_in(int step, void (*how)()) {
 
 int run() {
     MpiRanks ranks(MPI_COMM_WORLD);
-    int wrong = refuse_without_ranks(ranks) + end_together(ranks) + slice_along_diagonal(ranks);
+    int wrong = refuse_without_ranks(ranks) + refuse_other_ranks(ranks) + end_together(ranks) +
+                slice_along_diagonal(ranks);
     struct Shape {
         const char* name;
         p8est_connectivity_t* connectivity;

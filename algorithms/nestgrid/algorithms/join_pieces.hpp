@@ -24,6 +24,7 @@ struct JoinedPiece {
     std::vector<std::uint64_t> number;
     std::vector<int> owner;          ///< by vertex: the least rank that has it
     std::vector<VertexCopy> copies;  ///< in the order of vertices and, for each, of ranks
+    int ranks = 1;                   ///< that have pieces, or might have
 
     std::uint64_t first_vertex = 0;   ///< the number of the first vertex that this rank owns
     std::uint64_t first_simplex = 0;  ///< how many triangles (segments) lesser ranks have

@@ -107,6 +107,11 @@ public:
     Presence presence(const Element& e) const {
         return presence_[static_cast<std::size_t>(e.level)][static_cast<std::size_t>(e.index)];
     }
+    int rank_count() const {
+        const auto processes =
+            dealii::Utilities::MPI::n_mpi_processes(triangulation_->get_communicator());
+        return static_cast<int>(processes);
+    }
     std::uint64_t epoch() const { return epoch_; }
 
     const Triangulation& triangulation() const { return *triangulation_; }

@@ -109,6 +109,7 @@ public:
     Presence presence(const Element& e) const {
         return e.partitionType() == Dune::InteriorEntity ? Presence::here : Presence::elsewhere;
     }
+    int rank_count() const { return grid_->comm().size(); }
     /// Where a coarse element is in the order of one process.
     std::uint64_t coarse_place(std::size_t i) const {
         return Traits::coarse_place(*grid_, coarse_entity(i));

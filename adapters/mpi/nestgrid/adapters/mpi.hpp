@@ -5,10 +5,13 @@
 //
 // Messages go through a communicator of their own. An exchange is sparse: nobody is told how many
 // messages come; each rank receives until all have been received (Hoefler, Siebert, Lumsdaine
-// 2010). One thread of each rank may call. Where a rank dies, MPI ends the job.
+// 2010). One thread of each rank may call at a time, and the one that initialised MPI alone where
+// MPI was not asked for more. Where a rank dies, MPI ends the job.
 #pragma once
 
 #include <algorithm>
+#include <atomic>
+#include <string>
 
 #include <mpi.h>
 
@@ -22,11 +25,16 @@ class MpiRanks final : public Ranks {
 public:
     /// Collective. \param communicator whose ranks are those of the grid; it is copied
     ///
-    /// \throw InvalidInput where MPI was not initialised, or has been finalised
+    /// \throw InvalidInput where MPI was not initialised, or has been finalised; where this process
+    ///        is in no communicator
     explicit MpiRanks(MPI_Comm communicator) {
         if (!is(MPI_Initialized))
             throw InvalidInput("MPI was not initialised: call MPI_Init first");
-        require_not_finalised();
+        require_usable();
+        if (communicator == MPI_COMM_NULL) {
+            throw InvalidInput(
+                "the communicator is MPI_COMM_NULL: this process is none of its ranks");
+        }
         MPI_Comm_dup(communicator, &communicator_);
         MPI_Comm_rank(communicator_, &rank_);
         MPI_Comm_size(communicator_, &size_);
@@ -40,8 +48,10 @@ public:
     int rank() const override { return rank_; }
     int size() const override { return size_; }
 
+    // All throw InvalidInput, before anything is sent, where MPI has been finalised, does not allow
+    // this thread, or another thread is in one of them.
     std::vector<Message> exchange(std::vector<Message> to) override {
-        require_not_finalised();
+        const Turn turn(*this);
         // In turn, so that a message of the next exchange is not taken for one of this.
         tag_ = 3 - tag_;
         std::vector<Bytes> from(static_cast<std::size_t>(size_));
@@ -63,7 +73,7 @@ public:
     }
 
     std::vector<Bytes> gather(Bytes own) override {
-        require_not_finalised();
+        const Turn turn(*this);
         const auto ranks = static_cast<std::size_t>(size_);
         std::uint64_t bytes = own.size();
         std::vector<std::uint64_t> all(ranks);
@@ -78,7 +88,7 @@ public:
     }
 
     void reduce(std::span<std::uint64_t> numbers, Reduction how) override {
-        require_not_finalised();
+        const Turn turn(*this);
         const MPI_Op op = how == Reduction::max   ? MPI_MAX
                           : how == Reduction::min ? MPI_MIN
                                                   : MPI_SUM;
@@ -99,9 +109,34 @@ private:
         asked(&flag);
         return flag != 0;
     }
-    static void require_not_finalised() {
+    static void require_usable() {
         if (is(MPI_Finalized)) throw InvalidInput("MPI has been finalised");
+        int allowed = MPI_THREAD_SINGLE;
+        MPI_Query_thread(&allowed);
+        if (allowed < MPI_THREAD_SERIALIZED && !is(MPI_Is_thread_main)) {
+            throw InvalidInput(
+                "MPI allows none but the thread that initialised it: call MPI_Init_thread with "
+                "MPI_THREAD_SERIALIZED, or MpiRanks from that thread");
+        }
     }
+
+    /// That a thread talks to other ranks, while it lives.
+    class Turn {
+    public:
+        explicit Turn(MpiRanks& ranks) : taken_{&ranks.taken_} {
+            require_usable();
+            if (taken_->exchange(true)) {
+                throw InvalidInput("two threads of rank " + std::to_string(ranks.rank_) +
+                                   " use one MpiRanks at the same time: give each its own");
+            }
+        }
+        Turn(const Turn&) = delete;
+        Turn& operator=(const Turn&) = delete;
+        ~Turn() { taken_->store(false); }
+
+    private:
+        std::atomic<bool>* taken_;
+    };
 
     void send(const Message& m, std::vector<MPI_Request>& sent) const {
         for (std::size_t first = 0; first < m.bytes.size(); first += most_) {
@@ -167,6 +202,7 @@ private:
     int rank_ = 0;
     int size_ = 1;
     int tag_ = 1;  // 1 or 2
+    std::atomic<bool> taken_ = false;
 };
 
 }  // namespace nestgrid

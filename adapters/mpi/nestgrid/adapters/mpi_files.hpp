@@ -160,9 +160,15 @@ struct VtkColumns {
     bool normals;
 };
 
-/// \throw InvalidInput on all ranks where `joined` is of another piece on some rank
+/// \throw InvalidInput on all ranks where `joined` is of another piece on some rank, or of another
+///        number of ranks
 template <int dimension>
 VtkColumns columns_of(Ranks& ranks, const Surface<dimension>& surface, const JoinedPiece& joined) {
+    if (joined.ranks != ranks.size()) {
+        throw InvalidInput("the pieces are those of " + std::to_string(joined.ranks) +
+                           " ranks, but the communicator that writes them has " +
+                           std::to_string(ranks.size()) + " processes");
+    }
     const std::size_t vertices = surface.vertices.size();
     std::array<std::uint64_t, 3> all{
         vertices == 0 ? 0 : surface.attributes.size() / vertices,

@@ -60,6 +60,7 @@ public:
         return e.last - e.first == 1 && e.presence == Presence::here ? nullptr : rule_;
     }
     Presence presence(const Element& e) const { return e.presence; }
+    int rank_count() const { return forest_->mpisize; }
     void children(const Element& e, std::span<Element> out) const {
         std::uint32_t first = e.first;
         for (unsigned c = 0; c < max_children; ++c) {
