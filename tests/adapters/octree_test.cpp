@@ -300,6 +300,94 @@ TEST(LinearOctree, TakesDataOfCells) {
     expect_linear_cells(LinearSample<3>(turned_trees<3>(), 1));
 }
 
+constexpr int thirds_depth = 3;
+
+/// One tree, divided by three at random.
+template <int dim>
+std::vector<Octant> random_thirds(unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<Octant> leaves;
+    const auto add = [&](const Octant& o, const auto& again) -> void {
+        if (o.level == thirds_depth || (o.level > 0 && random() % 4 != 0)) {
+            leaves.push_back(o);
+            return;
+        }
+        const int part = o.level == 0 ? 9 : (o.level == 1 ? 3 : 1);
+        for (int c = 0; c < (dim == 2 ? 9 : 27); ++c) {
+            again(
+                {o.x + part * (c % 3), o.y + part * (c / 3 % 3), o.z + part * (c / 9), o.level + 1},
+                again);
+        }
+    };
+    add({0, 0, 0, 0}, add);
+    return leaves;
+}
+
+/// Offers the nodes that hang, for which it looks at all leaves.
+template <int dim>
+class Thirds : public LinearOctree<dim, Octant, 3> {
+public:
+    using Base = LinearOctree<dim, Octant, 3>;
+    using Element = typename Base::Element;
+
+    explicit Thirds(std::span<const Octant> leaves)
+        : Base(dim == 2 ? quadrilaterals(1) : hexahedra(1), {leaves}, thirds_depth),
+          leaves_{leaves} {}
+
+    NodeMask constrained(const Element& e) const {
+        const Octant& first = leaves_[e.first];
+        const int width = static_cast<int>(Base::cells_in(thirds_depth - e.level));
+        return nodes_.hanging([&](const std::array<int, 3>& steps) {
+            const std::array<int, 3> at{first.x + steps[0] * width, first.y + steps[1] * width,
+                                        first.z + steps[2] * width};
+            return std::ranges::any_of(leaves_, [&](const Octant& leaf) {
+                const int side = static_cast<int>(Base::cells_in(thirds_depth - leaf.level));
+                const auto holds = [&](int low, int x) { return low <= x && x < low + side; };
+                return leaf.level <= e.level && holds(leaf.x, at[0]) && holds(leaf.y, at[1]) &&
+                       (dim == 2 || holds(leaf.z, at[2]));
+            });
+        });
+    }
+
+private:
+    std::span<const Octant> leaves_;
+    detail::NodesOfTrees<dim, 3> nodes_;
+};
+
+template <int dim>
+void expect_thirds(unsigned seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::vector<Octant> leaves = random_thirds<dim>(seed);
+    const Thirds<dim> grid(leaves);
+    const auto centre = [&](const auto& leaf) {
+        const Octant& o = leaves[grid.leaf_index(leaf)];
+        const double half = std::pow(3, thirds_depth - o.level) / 2;
+        return Point{o.x + half, o.y + half, dim == 2 ? 0 : o.z + half};
+    };
+    const CellAverages values(grid, [&](const auto& leaf) {
+        return norm((1.0 / 27) * centre(leaf) - Point{0.4, 0.5, dim == 2 ? 0 : 0.55});
+    });
+    const auto violation = check_grid(grid, values);
+    EXPECT_FALSE(violation) << violation->sentence;
+    const HierarchicalIndicator indicator(grid, values);
+    for (const double threshold : {0.0, 0.02, 0.2}) {
+        const auto result =
+            isosurface(grid, values, 0.3, under(indicator, threshold), {.verify = true});
+        EXPECT_GT(result.surface.simplices.size(), 5U);
+    }
+    const CellAverages plane(grid, [&](const auto& leaf) { return centre(leaf)[0]; });
+    for (const Point& x : isosurface(grid, plane, 10.1, Projection{}).surface.vertices) {
+        ASSERT_NEAR(27 * x[0], 10.1, 1e-10);
+    }
+}
+
+TEST(LinearOctree, DividesByThree) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        expect_thirds<2>(seed);
+        expect_thirds<3>(seed);
+    }
+}
+
 std::string sentence(const std::vector<Octant>& leaves, int levels = depth) {
     return refusal([&] {
         const std::vector<std::span<const Octant>> tree{leaves};

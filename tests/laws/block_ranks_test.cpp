@@ -171,6 +171,35 @@ TEST(BlockRanks, DrawWhatOneRankDraws) {
     expect_same_on_ranks<3>();
 }
 
+/// Gradients of cells need cells that a rank may lack, and would be 0 there.
+TEST(BlockRanks, DrawNoNormals) {
+    Blocks<3> blocks;
+    blocks.levels.push_back({{{{0, 0, 0}, {3, 3, 3}}, {{4, 0, 0}, {7, 3, 3}}}, {}});
+    const BlockData<3> data(blocks, [](const Point& x) { return norm(x) - 0.4; });
+    std::array<bool, 2> talked{true, true};  // until a rank is refused
+    const auto ended = SimulatedRanks::run(2, [&](Ranks& all) {
+        const BlockPart<3> mine(blocks, {{0, 1}}, all.rank());
+        const Distributed grid(mine, all);
+        const DistributedField field(grid, BlockCells<3, double>(mine, data.arrays()));
+        const HierarchicalIndicator indicator(grid, field);
+        const auto before = SimulatedRanks::traffic(all).exchanges;
+        try {
+            isosurface(grid, field, 0.0, under(indicator, 0.0), {.normals = true});
+        } catch (const std::exception&) {
+            talked[static_cast<std::size_t>(all.rank())] =
+                SimulatedRanks::traffic(all).exchanges != before;
+            throw;
+        }
+    });
+    for (const std::string& sentence : ended) {
+        EXPECT_NE(sentence.find("a field with gradients of its own is not made for distributed "
+                                "grids yet"),
+                  std::string::npos)
+            << sentence;
+    }
+    EXPECT_FALSE(talked[0] || talked[1]);
+}
+
 TEST(BlockRanks, NeedAnOwnerForEachBox) {
     const Blocks<3> blocks = random_blocks<3>({});
     EXPECT_EQ(refusal([&] { const BlockPart<3> part(blocks, {}, 0); }),
