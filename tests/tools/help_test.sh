@@ -80,8 +80,8 @@ refused 1 "names no known format, which is .*: did you mean '.vtp'\?" isosurface
 refused 2 "'v.vti' is no command but a file" v.vti
 refused 2 'a command is missing'
 refused 2 "has no option --qqqqqq \(" isosurface v.vti --qqqqqq
-refused 2 "takes NUMBER, not 'abc'" isosurface v.vti --value abc
-refused 2 'takes NUMBER, but nothing follows' isosurface v.vti --value
+refused 2 "takes V,V,..., not 'abc'" isosurface v.vti --value abc
+refused 2 'takes V,V,..., but nothing follows' isosurface v.vti --value
 refused 2 '--value is given twice' isosurface v.vti --value 1 --value 2
 refused 2 'takes X,Y,Z,NX,NY,NZ' slice v.vti --plane 1,2,3
 refused 2 "value is required: the values of 'v.vti' are from [0-9.]+ to [0-9.]+, try --value [0-9]+ \(" isosurface v.vti

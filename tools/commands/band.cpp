@@ -22,7 +22,7 @@ void run_band(BandArguments& o, Report& report) {
     if (!(o.low < o.high)) throw InvalidInput("--low is not below --high");
     refuse_colours(o.surface.picture, "a band has one colour");
     DrawingRequest request = o.request();
-    request.isovalue = o.low;
+    request.isovalues = {o.low};
     request.upper = o.high;
     request.normals = !o.flat;
     draw(o, request, report);

@@ -41,7 +41,7 @@ void run_isolines(IsolinesArguments& o, Report& report) {
     if (is_sliced(o.slice)) f = slice_function(o.slice);
     DrawingRequest request = o.request();
     request.function = f.function.get();
-    request.isovalue = o.isovalue;
+    if (o.isovalue) request.isovalues = {*o.isovalue};
     request.values = o.values;
     request.value_count = o.count;
     request.flat = f.flat || f.function == nullptr;

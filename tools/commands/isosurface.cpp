@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include <nestgrid/algorithms/cut_indicator.hpp>
 #include <nestgrid/error.hpp>
@@ -9,13 +11,14 @@
 #include "drawing/draw.hpp"
 #include "drawing/first_isovalue.hpp"
 #include "drawing/vtk_contour.hpp"
+#include "formats.hpp"
 
 namespace {
 
 using nestgrid::InvalidInput;
 
 struct IsosurfaceArguments : DrawingOptions {
-    double value = 0;
+    std::vector<double> values;
     std::vector<double> box;
     double box_threshold = 0;
     bool cap = false;
@@ -48,6 +51,32 @@ std::size_t errors_asked(const IsosurfaceArguments& o) {
     return command.count("--error") + (least ? command.count("--max-triangles") : 0);
 }
 
+/// \throw nestgrid::InvalidInput for values of which no surfaces can be told apart, and for options
+///        that are for one value
+void check_values(const IsosurfaceArguments& o) {
+    std::vector<double> values = o.values;
+    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+        throw InvalidInput("--value is not a finite number");
+    }
+    std::ranges::sort(values);
+    const auto twice = std::ranges::adjacent_find(values);
+    if (twice != values.end()) {
+        throw InvalidInput("--value has " + distinct_texts({*twice}).front() + " twice");
+    }
+    if (values.size() == 1) return;
+    refuse_options(
+        *o.surface.command,
+        {"--max-triangles", "--collapse", "--distance-field", "--elements", "--against-vtk"},
+        "is for one --value");
+    if (o.surface.output.empty()) return;
+    const std::string ending = o.surface.output_ending();
+    const Format* const format = format_of("x" + ending);
+    if (format != nullptr && !format->keeps_elements) {
+        throw InvalidInput("several values need an --output as .vtp: in a " + ending +
+                           " nothing tells their surfaces apart");
+    }
+}
+
 /// \throw nestgrid::InvalidInput for options that do not go together
 void check(const IsosurfaceArguments& o) {
     const CLI::App& command = *o.surface.command;
@@ -65,7 +94,7 @@ void check(const IsosurfaceArguments& o) {
     if (!o.box.empty() && o.surface.projection.blend != 1) {
         throw InvalidInput("--box has two thresholds: leave out --blend");
     }
-    if (!std::isfinite(o.value)) throw InvalidInput("--value is not a finite number");
+    check_values(o);
     if (o.input.labels.size() > 1 && !o.time.in_use()) {
         refuse_options(*o.surface.command, {"--against-vtk"}, "is for one part");
     }
@@ -74,7 +103,7 @@ void check(const IsosurfaceArguments& o) {
 
 DrawingRequest request_of(const IsosurfaceArguments& o) {
     DrawingRequest request = o.request();
-    request.isovalue = o.value;
+    request.isovalues = o.values;
     request.cap = o.cap;
     request.normals = !o.flat;
     request.at_nodes = o.at_nodes;
@@ -144,7 +173,7 @@ void run_isosurface(IsosurfaceArguments& o, Report& report) {
         if (errors_asked(o) > 0 && suits_cuts(field)) projection.indicator = "cut";
     };
     request.add = [&](const InputField& field, Report& to) {
-        if (o.against_vtk) report_contour(field.volumes->front(), o.value, to);
+        if (o.against_vtk) report_contour(field.volumes->front(), o.values.front(), to);
         say_what_distances_are(o, request, field.length_unit, to);
     };
     draw(o, request, report);
@@ -186,8 +215,14 @@ Command add_isosurface(CLI::App& program) {
         "  nestgrid isosurface head.nii.gz --value 60 --threshold 2% -o head.vtp\n"
         "  nestgrid isosurface head.nii.gz --value 60 --max-triangles 5000 --image h.png\n");
     add_input(*isosurface, o->input);
-    isosurface->add_option("--value", o->value, "the isovalue, in units of the data")
-        ->type_name("NUMBER")
+    isosurface
+        ->add_option("--value", o->values,
+                     "the isovalue, in units of the data; several with commas are drawn at once, "
+                     "and a .vtp tells that of each triangle")
+        ->type_name("V,V,...")
+        ->delimiter(',')
+        ->take_all()
+        ->allow_extra_args(false)
         ->required();
     add_surface_options(*isosurface, o->surface, true);
     add_elements_option(*isosurface, o->surface);

@@ -41,7 +41,7 @@ void run_slice(SliceArguments& o, Report& report) {
     }
     DrawingRequest request = o.request();
     request.function = f.function.get();
-    request.isovalue = o.isovalue;
+    if (o.isovalue) request.isovalues = {*o.isovalue};
     request.cap = o.cap;
     request.flat = f.flat;
     request.normal = f.normal;

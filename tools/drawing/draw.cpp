@@ -77,7 +77,7 @@ public:
         if (request_.look) request_.look(first);
         set_facts(first);
         field_.read_seconds = reading.seconds();
-        expected_ = parts.size() * surfaces_of_part();
+        expected_ = parts.size() * walks_of_part();
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const bool several = parts.size() > 1;
             draw_part(parts[i], several ? std::optional(options_.input.labels[i]) : std::nullopt);
@@ -89,7 +89,7 @@ public:
     }
 
 private:
-    std::size_t surfaces_of_part() const {
+    std::size_t walks_of_part() const {
         const SurfaceOptions& s = options_.surface;
         const std::size_t moments =
             options_.time.frames ? static_cast<std::size_t>(*options_.time.frames) : 1;
@@ -124,7 +124,7 @@ private:
             field_.least = least;
             field_.greatest = greatest;
         }
-        if (request_.isovalue && field_.surfaces.empty()) {
+        if (request_.has_isovalue() && field_.surfaces.empty()) {
             field_.outside = why_empty(request_, least, greatest);
         }
         // The range of all surfaces is known too late for a film: that of the frames takes its
@@ -139,18 +139,18 @@ private:
         if (request_.box) projection.region = region_of(*request_.box, field_.dimension);
         if (asks_for_everything()) projection.threshold = 0;
         const Moments moments(part, options_.time, options_.input.path, std::move(projection),
-                              request_.isovalue, options_.surface.threads,
+                              request_.isovalues, options_.surface.threads,
                               [&](double share) { progress_.part(share); });
         preroll(moments);
         const Telling tell = [&](const std::string& work) {
             if (!work.empty()) return progress_.show(work);
-            progress_.show("drawing", field_.surfaces.size(), expected_);
+            progress_.show("drawing", walks_, expected_);
         };
         moments.for_each([&](const Moment& moment) {
             draw_moment(moment, moments.executor(), options_.surface, request_, tell,
-                        [&](Drawn&& d) {
-                            d.label = label;
-                            take(std::move(d));
+                        [&](std::vector<Drawn>&& walk) {
+                            for (Drawn& d : walk) d.label = label;
+                            take(std::move(walk));
                         });
         });
         const PrerollCost& cost = moments.preroll_cost();
@@ -158,7 +158,26 @@ private:
         field_.preroll_peak_bytes = std::max(field_.preroll_peak_bytes, cost.peak_bytes);
         field_.preroll_kept_bytes = std::max(field_.preroll_kept_bytes, cost.kept_bytes);
     }
-    void take(Drawn d) {
+    void take(std::vector<Drawn> walk) {
+        ++walks_;
+        for (Drawn& d : walk) look_at(d);
+        if (film_) {
+            for (Drawn& d : walk) draw_isolines(d, field_.values);
+            film_->add(data_of_walks(panels_of(walk), walk).front(), *walk.front().time);
+        }
+        const bool is_kept = !options_.surface.output.empty() ||
+                             !options_.surface.picture.image.empty() || request_.value_count > 0;
+        for (Drawn& d : walk) {
+            if (film_ || (!is_kept && field_.values.empty())) {
+                d.result.surface = {};
+                d.segments = {};
+                d.isosurface = {};
+            }
+            field_.surfaces.push_back(std::move(d));
+        }
+    }
+    /// Colours a surface, and takes the range of its colours.
+    void look_at(Drawn& d) {
         nestgrid::Surface<3>& surface = d.result.surface;
         if (!request_.by.empty() && surface.attributes.empty() && !surface.vertices.empty()) {
             colour(surface);
@@ -169,18 +188,6 @@ private:
         }
         const bool may_vanish = !request_.by.empty() && d.time;
         if (field_.surfaces.empty() && !may_vanish) require_triangles(d);
-        if (film_) {
-            draw_isolines(d, field_.values);
-            film_->add(data_of(panel_of(d), d, field_, request_), *d.time);
-        }
-        const bool is_kept = !options_.surface.output.empty() ||
-                             !options_.surface.picture.image.empty() || request_.value_count > 0;
-        if (film_ || (!is_kept && field_.values.empty())) {
-            surface = {};
-            d.segments = {};
-            d.isosurface = {};
-        }
-        field_.surfaces.push_back(std::move(d));
     }
     /// Gives an isosurface the values of an expression at its vertices, where it has no other
     /// field.
@@ -203,23 +210,36 @@ private:
         for (Drawn& d : field_.surfaces) draw_isolines(d, field_.values);
         const SurfaceOptions& s = options_.surface;
         if (s.output.empty() && s.picture.image.empty()) return;
-        std::vector<Panel> panels;
-        for (Drawn& d : field_.surfaces) panels.push_back(panel_of(d));
+        std::vector<Panel> panels = panels_of(field_.surfaces);
         if (!s.output.empty()) write(panels, report);
         if (!s.picture.image.empty()) paint(panels, report);
     }
-    Panel panel_of(Drawn& d) const {
-        return make_panel(d, field_, request_, options_.surface.elements);
+    /// The panels borrow the surfaces.
+    std::vector<Panel> panels_of(std::vector<Drawn>& surfaces) const {
+        std::vector<Panel> panels;
+        for (Drawn& d : surfaces) {
+            panels.push_back(make_panel(d, field_, request_, options_.surface.elements));
+        }
+        return panels;
+    }
+    /// One data set for each walk.
+    std::vector<vtkSmartPointer<vtkPolyData>> data_of_walks(
+        const std::vector<Panel>& panels, const std::vector<Drawn>& surfaces) const {
+        std::vector<std::vector<vtkSmartPointer<vtkPolyData>>> walks;
+        for (std::size_t i = 0; i < panels.size(); ++i) {
+            if (!surfaces[i].shares_walk) walks.emplace_back();
+            walks.back().push_back(data_of(panels[i], surfaces[i], field_, request_));
+        }
+        std::vector<vtkSmartPointer<vtkPolyData>> data;
+        for (const auto& walk : walks) data.push_back(appended(walk));
+        return data;
     }
     void write(const std::vector<Panel>& panels, Report& report) {
         progress_.show("writing");
         const Meter meter;
-        std::vector<vtkSmartPointer<vtkPolyData>> data;
-        for (std::size_t i = 0; i < panels.size(); ++i) {
-            data.push_back(data_of(panels[i], field_.surfaces[i], field_, request_));
-        }
         const SurfaceOptions& s = options_.surface;
-        write_surfaces(data, s.output, s.output_ending(), s.encoding, report);
+        write_surfaces(data_of_walks(panels, field_.surfaces), s.output, s.output_ending(),
+                       s.encoding, report);
         field_.write_seconds = meter.seconds();
     }
     void paint(std::vector<Panel>& panels, Report& report) {
@@ -239,7 +259,8 @@ private:
     std::optional<Film> film_;
     std::optional<Expression> expression_;
     DrawnField field_;
-    std::size_t expected_ = 1;
+    std::size_t walks_ = 0;
+    std::size_t expected_ = 1;  // walks
 };
 
 }  // namespace
@@ -283,7 +304,7 @@ void draw(DrawingOptions& options, const DrawingRequest& request, Report& report
     check(options.surface);
     check(options.time);
     check_film(options.time, options.surface);
-    if (request.collapses && !request.isovalue) {
+    if (request.collapses && !request.has_isovalue()) {
         const CLI::App& command = *options.surface.command;
         if (command.count("--error") + command.count("--max-triangles") == 0) {
             throw InvalidInput("--collapse needs an --error or --max-triangles to keep");

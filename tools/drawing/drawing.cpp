@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <nestgrid/algorithms/drawing.hpp>
@@ -25,7 +26,7 @@ using nestgrid::Work;
 
 void check(const DrawingRequest& request, const SurfaceOptions& options,
            const nestgrid::HierarchyFacts& facts) {
-    const bool in_space = request.function != nullptr || request.isovalue;
+    const bool in_space = request.function != nullptr || request.has_isovalue();
     if (!in_space && facts.dimension == 3) {
         throw InvalidInput(
             "the field is one in space: give a slice, for isolines, or use 'isosurface'");
@@ -83,25 +84,32 @@ public:
         check(request, options, prerolls().field().facts());
     }
 
-    Drawn draw(Projection projection, Drawn drawn) const {
+    /// \return the surfaces of one walk
+    std::vector<Drawn> draw(Projection projection, Drawn drawn) const {
         drawn.time = moment_.time();
-        Steps steps(tell_, drawn);
+        std::vector<Drawn> walk(std::max<std::size_t>(1, request_.isovalues.size()), drawn);
+        Drawn& first = walk.front();
+        Steps steps(tell_, first);
         const Work work{.executor = executor_,
                         .step = [&](const char* step) { steps.begin(step); }};
         projection.colour_tolerance = request_.colour_tolerance;
-        draw_into(drawn, projection, work);
-        steps.end();
-        const std::size_t kept = drawn.result.surface.memory_bytes() +
-                                 drawn.segments.memory_bytes() + drawn.isosurface.memory_bytes();
-        drawn.peak_bytes -= std::min(drawn.peak_bytes, kept);
-        if (request_.measures) {
-            constexpr std::size_t points = 200000;
-            steps.begin("measuring");
-            drawn.measured = measure_error(prerolls(), drawn.result.surface, *request_.isovalue,
-                                           points, {executor_});
-            steps.end();
+        if (request_.has_several_isovalues()) {
+            draw_together(walk, projection, work);
+        } else {
+            draw_into(first, projection, work);
         }
-        return reported(std::move(drawn));
+        steps.end();
+        std::size_t kept = 0;
+        for (const Drawn& d : walk) {
+            kept += d.result.surface.memory_bytes() + d.segments.memory_bytes() +
+                    d.isosurface.memory_bytes();
+        }
+        first.peak_bytes -= std::min(first.peak_bytes, kept);
+        for (std::size_t i = 0; i < walk.size(); ++i) {
+            if (request_.measures) measure(walk[i], request_.isovalues[i]);
+            report(walk[i]);
+        }
+        return walk;
     }
 
 private:
@@ -109,7 +117,7 @@ private:
 
     void draw_into(Drawn& drawn, const Projection& projection, const Work& work) const {
         if (request_.has_two_surfaces()) return draw_both(drawn, projection, work);
-        if (request_.isovalue) return draw_isosurface(drawn, projection, work);
+        if (request_.has_isovalue()) return draw_isosurface(drawn, projection, work);
         if (request_.function != nullptr) {
             return take(drawn, slice(prerolls(), *request_.function, of_slice(projection),
                                      {.cap = request_.cap, .elements = keeps_elements()}, work));
@@ -134,7 +142,7 @@ private:
     Projected<nestgrid::Isosurface<dimension>> level_set(const Projection& projection,
                                                          const IsosurfaceOptions& options,
                                                          const Work& work) const {
-        const double isovalue = *request_.isovalue;
+        const double isovalue = request_.isovalues.front();
         if (!request_.upper) {
             return nestgrid::isosurface<dimension>(prerolls(), isovalue, projection, options, work);
         }
@@ -149,14 +157,32 @@ private:
         }
         auto lines = level_set<2>(projection, options, work);
         take_facts(drawn, lines);
-        drawn.segments = std::move(lines.surface);
-        drawn.result = {lines, {}, lines.counts};
-        drawn.result.surface_error = lines.surface_error;
-        drawn.result.stack_bytes = lines.stack_bytes;
+        take_lines(drawn, std::move(lines));
+    }
+    /// Several isosurfaces in one walk.
+    void draw_together(std::vector<Drawn>& walk, const Projection& projection,
+                       const Work& work) const {
+        const auto options = isosurface_options(executor_.concurrency() == 1);
+        const auto all = [&]<int dimension>(std::integral_constant<int, dimension>) {
+            return isosurfaces<dimension>(prerolls(), request_.isovalues, projection, options,
+                                          work);
+        };
+        if (prerolls().field().dimension() == 3) {
+            auto surfaces = all(std::integral_constant<int, 3>{});
+            for (std::size_t i = 0; i < walk.size(); ++i) walk[i].result = std::move(surfaces[i]);
+        } else {
+            auto lines = all(std::integral_constant<int, 2>{});
+            for (std::size_t i = 0; i < walk.size(); ++i) take_lines(walk[i], std::move(lines[i]));
+        }
+        for (std::size_t i = 0; i < walk.size(); ++i) {
+            walk[i].threshold = projection.least_threshold();
+            walk[i].isovalue = request_.isovalues[i];
+            walk[i].shares_walk = i > 0;
+        }
     }
     /// The slice, and the isosurface beside it, in one walk.
     void draw_both(Drawn& drawn, Projection projection, const Work& work) const {
-        const nestgrid::SliceRequest both{{request_.function}, {*request_.isovalue}};
+        const nestgrid::SliceRequest both{{request_.function}, request_.isovalues};
         const double tolerance = std::exchange(projection.colour_tolerance, 0);
         if (projection.max_triangles > 0) {
             work.begin("searching the threshold");
@@ -209,13 +235,26 @@ private:
         if (request_.keeps_distances && drawn.threshold > 0) drawn.far_points = from.far_points;
         drawn.result = std::move(from);
     }
-    static Drawn reported(Drawn d) {
+    static void take_lines(Drawn& drawn, nestgrid::Isosurface<2> lines) {
+        drawn.segments = std::move(lines.surface);
+        drawn.result = {lines, {}, lines.counts};
+        drawn.result.surface_error = lines.surface_error;
+        drawn.result.stack_bytes = lines.stack_bytes;
+    }
+    void measure(Drawn& drawn, double isovalue) const {
+        constexpr std::size_t points = 200000;
+        Steps steps(tell_, drawn);
+        steps.begin("measuring");
+        drawn.measured =
+            measure_error(prerolls(), drawn.result.surface, isovalue, points, {executor_});
+        steps.end();
+    }
+    static void report(Drawn& d) {
         d.report = nestgrid::surface_report(d.result.surface);
         d.isosurface_report = nestgrid::surface_report(d.isosurface);
-        if (d.segments.vertices.empty()) return d;
+        if (d.segments.vertices.empty()) return;
         d.report.vertices = d.segments.vertices.size();
         d.report.triangles = d.segments.simplices.size();
-        return d;
     }
 
     /// Whether triangles are to tell their elements: to files, or to what changes them.
@@ -270,7 +309,7 @@ void require_error_alone(const DrawingRequest& request, const SurfaceOptions& op
 /// Draws a field of higher degree within each error, or each number of triangles.
 void draw_polynomials(const nestgrid::HighOrder& data, const Moment& moment,
                       const SurfaceOptions& options, const DrawingRequest& request,
-                      const Drawing& drawing, const std::function<void(Drawn&&)>& take) {
+                      const Drawing& drawing, const TakeWalk& take) {
     const Projection within{.indicator = "error", .lens = request.lens};
     std::vector<Projection> asked;
     for (const std::int64_t budget : options.budgets) {
@@ -296,12 +335,12 @@ void draw_polynomials(const nestgrid::HighOrder& data, const Moment& moment,
 
 bool is_drawn_exactly(const DrawingRequest& request, const SurfaceOptions& options) {
     return options.thresholds.empty() && options.budgets.empty() && !request.lens &&
-           !request.isovalue;
+           !request.has_isovalue();
 }
 
 void draw_moment(const Moment& moment, const nestgrid::Executor& executor,
                  const SurfaceOptions& options, const DrawingRequest& request, const Telling& tell,
-                 const std::function<void(Drawn&&)>& take) {
+                 const TakeWalk& take) {
     const Drawing drawing(moment, executor, options, request, tell);
     if (const std::shared_ptr<const nestgrid::HighOrder> data = moment.high_order()) {
         require_error_alone(request, options, data->greatest_degree());

@@ -13,9 +13,7 @@ const nestgrid::Criteria& Moment::criteria() const {
     if (!criteria_) {
         all_.range();
         const Meter meter;
-        std::vector<double> isovalues;
-        if (all_.isovalue_) isovalues.push_back(*all_.isovalue_);
-        criteria_.emplace(*prerolls_, all_.projection_, isovalues,
+        criteria_.emplace(*prerolls_, all_.projection_, all_.isovalues_,
                           nestgrid::Work{.executor = all_.executor()});
         all_.cost_.seconds += meter.seconds();
     }
@@ -38,12 +36,12 @@ double Moment::error(const ThresholdText& text) const {
 
 Moments::Moments(const InputField& field, const TimeOptions& time,
                  const std::filesystem::path& path, nestgrid::Projection projection,
-                 std::optional<double> isovalue, int threads,
+                 std::vector<double> isovalues, int threads,
                  const std::function<void(double share)>& tell)
     : field_{field},
       time_{time},
       projection_{std::move(projection)},
-      isovalue_{isovalue},
+      isovalues_{std::move(isovalues)},
       threads_(threads),
       executor_(threads_, tell) {
     require_frames(time, field.times(), path);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include <nestgrid/adapters/tbb.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
@@ -63,12 +64,12 @@ class Moments {
 public:
     /// \param field must outlive the moments
     /// \param path of its file, for sentences
-    /// \param isovalue of the isosurface; nothing where none is drawn
+    /// \param isovalues of the isosurfaces; empty where none are drawn
     /// \param tell told the share that is done of the work at hand, from 0 to 1, where there are
     ///        several threads; may be empty
     /// \throw nestgrid::InvalidInput as require_frames()
     Moments(const InputField& field, const TimeOptions& time, const std::filesystem::path& path,
-            nestgrid::Projection projection, std::optional<double> isovalue, int threads,
+            nestgrid::Projection projection, std::vector<double> isovalues, int threads,
             const std::function<void(double share)>& tell = {});
 
     const nestgrid::Executor& executor() const { return executor_; }
@@ -87,7 +88,7 @@ private:
     const InputField& field_;
     const TimeOptions& time_;
     nestgrid::Projection projection_;
-    std::optional<double> isovalue_;
+    std::vector<double> isovalues_;
     nestgrid::TbbExecutor threads_;
     nestgrid::TellingExecutor executor_;
     mutable std::optional<std::array<double, 2>> range_;

@@ -34,10 +34,10 @@ bool is_level(const nestgrid::Surface<3>& surface) {
 /// no shades, so that its colours are those of the legend.
 void set_view(Panel& panel, const DrawingRequest& request, const nestgrid::Surface<3>& surface) {
     const nestgrid::Point normal = request.flat ? request.normal : nestgrid::Point{0, 0, 1};
-    const bool flat =
-        request.flat || (request.function == nullptr && !request.isovalue && is_level(surface));
+    const bool flat = request.flat ||
+                      (request.function == nullptr && !request.has_isovalue() && is_level(surface));
     panel.lit = !flat || request.cap;
-    if (request.isovalue || !flat) return;
+    if (request.has_isovalue() || !flat) return;
     if (!request.cap) {
         // A plane across y is looked at from the front, where x runs to the right.
         const bool across_y = normal[0] == 0 && normal[1] > 0 && normal[2] == 0;
@@ -75,6 +75,15 @@ void add_elements(const nestgrid::Surface<dimension>& surface, vtkPolyData* data
     data->GetCellData()->AddArray(level);
 }
 
+/// The isovalue of each triangle, as cell data of the name that lines have for theirs.
+void add_value(double isovalue, vtkPolyData* data) {
+    const vtkNew<vtkDoubleArray> values;
+    values->SetName("value");
+    values->SetNumberOfValues(data->GetNumberOfCells());
+    values->FillValue(isovalue);
+    data->GetCellData()->AddArray(values);
+}
+
 /// A surface on its own arrays, but for normals, which are of single precision.
 /// \param colours the name of its attribute
 template <int dimension>
@@ -107,12 +116,13 @@ std::string caption(const Drawn& d, const DrawnField& field, const DrawingReques
     std::vector<std::string> parts;
     if (!request.in_one_colour()) {
         parts.push_back(short_name(field.name));
-        if (request.isovalue) {
+        if (request.has_isovalue()) {
             parts.back() += request.has_two_surfaces() ? " and the surface " : " where ";
-            parts.back() +=
-                with_number(short_name(field.input_name) + " = ", "%.4g", *request.isovalue);
+            parts.back() += with_number(short_name(field.input_name) + " = ", "%.4g",
+                                        request.isovalues.front());
         }
     }
+    if (d.isovalue) parts.push_back(with_number("isovalue ", "%.10g", *d.isovalue));
     if (d.label) parts.push_back(with_number("label ", "%.10g", *d.label));
     if (std::isfinite(d.threshold)) parts.push_back(with_number("threshold ", "%.4g", d.threshold));
     if (d.time) parts.push_back(with_number("time ", "%.4g", *d.time));
@@ -168,8 +178,24 @@ vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, const Drawn& d, const D
         data = append->GetOutput();
     }
     std::map<std::string, double> values;
-    if (request.in_one_colour() && !request.upper) values[field.input_name] = *request.isovalue;
+    if (request.in_one_colour() && !request.upper && !d.isovalue) {
+        values[field.input_name] = request.isovalues.front();
+    }
     if (d.label) values["label"] = *d.label;
+    if (d.isovalue) add_value(*d.isovalue, data);
     describe(data, field.length_unit, field.space, values);
     return data;
+}
+
+vtkSmartPointer<vtkPolyData> appended(std::vector<vtkSmartPointer<vtkPolyData>> surfaces) {
+    const vtkSmartPointer<vtkPolyData> first = surfaces.front();
+    std::erase_if(surfaces, [](vtkPolyData* each) { return each->GetNumberOfCells() == 0; });
+    if (surfaces.empty()) return first;
+    if (surfaces.size() == 1) return surfaces.front();
+    const vtkNew<vtkAppendPolyData> append;
+    for (const auto& surface : surfaces) append->AddInputData(surface);
+    append->Update();
+    vtkSmartPointer<vtkPolyData> all = append->GetOutput();
+    all->SetFieldData(surfaces.front()->GetFieldData());
+    return all;
 }

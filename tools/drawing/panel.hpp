@@ -4,6 +4,8 @@
 // Drawn surfaces as data of VTK, for files and pictures.
 #pragma once
 
+#include <vector>
+
 #include "drawing/request.hpp"
 #include "picture/picture.hpp"
 
@@ -18,3 +20,7 @@ void shade(Panel& panel);
 /// all.
 vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, const Drawn& d, const DrawnField& field,
                                      const DrawingRequest& request);
+
+/// Surfaces of one walk as one data set, each triangle of which tells its isovalue.
+/// \param surfaces at least one; a single one is given back
+vtkSmartPointer<vtkPolyData> appended(std::vector<vtkSmartPointer<vtkPolyData>> surfaces);

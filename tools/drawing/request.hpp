@@ -32,8 +32,8 @@ struct FineBox {
 struct DrawingRequest {
     /// A slice of a field in space, coloured by it; or null.
     const nestgrid::LevelFunction* function = nullptr;
-    /// The isosurface with this value: without a slice, or beside it and in the same walk.
-    std::optional<double> isovalue{};
+    /// The isosurfaces with these values, in one walk: without a slice, or a single one beside it.
+    std::vector<double> isovalues{};
     /// The surface around the band between the isovalue and this one, in its place.
     std::optional<double> upper{};
     /// What colours an isosurface without a slice; empty for one colour.
@@ -74,14 +74,19 @@ struct DrawingRequest {
     /// Adds what else there is to report; or empty.
     std::function<void(const InputField& field, Report& report)> add{};
 
-    bool in_one_colour() const { return isovalue && function == nullptr && by.empty(); }
-    bool has_two_surfaces() const { return isovalue && function != nullptr; }
+    bool has_isovalue() const { return !isovalues.empty(); }
+    bool has_several_isovalues() const { return isovalues.size() > 1; }
+    bool in_one_colour() const { return has_isovalue() && function == nullptr && by.empty(); }
+    bool has_two_surfaces() const { return has_isovalue() && function != nullptr; }
 };
 
 /// One surface and what it cost.
 struct Drawn {
-    std::optional<double> label;  ///< of the part, where there are several
-    std::optional<double> time;   ///< where it is between frames
+    std::optional<double> label;     ///< of the part, where there are several
+    std::optional<double> time;      ///< where it is between frames
+    std::optional<double> isovalue;  ///< where there are several
+    /// Whether it was drawn in one walk with the surface before it, which has what that cost.
+    bool shares_walk = false;
     double threshold = 0;
     int degree = 1;                   ///< of the polynomials within an error of which it is drawn
     bool by_default = false;          ///< whether nobody has asked for that error
@@ -114,7 +119,7 @@ struct DrawnField {
     // The range of the colours, or of the data where there are no colours.
     double least = std::numeric_limits<double>::infinity();
     double greatest = -std::numeric_limits<double>::infinity();
-    /// Why the isosurface is empty, where that is because of its value.
+    /// Why isosurfaces are empty, where that is because of their values.
     std::string outside{};
     double read_seconds = 0;
     double preroll_seconds = 0;

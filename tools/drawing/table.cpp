@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "joined.hpp"
 #include "output/print.hpp"
 
 namespace {
@@ -16,12 +17,13 @@ bool is_promised(const Drawn& d, const DrawingRequest& request) {
     return request.in_one_colour() && d.threshold > 0 && std::isfinite(d.result.surface_error);
 }
 
-/// The beginning of a row about one surface: its part, its time between frames, its number of
-/// triangles, its threshold.
+/// The beginning of a row about one surface: its part, its time between frames, its isovalue, its
+/// number of triangles, its threshold.
 Row begin_row(const Drawn& d) {
     Row row;
     if (d.label) row.add("label", *d.label);
     if (d.time) row.add("time", *d.time);
+    if (d.isovalue) row.add("isovalue", *d.isovalue);
     if (d.search.max_triangles > 0) row.add("max_triangles", d.search.max_triangles);
     return row.add("threshold", d.threshold);
 }
@@ -54,7 +56,8 @@ Row row_of(const Drawn& d, const DrawnField& field, const DrawingRequest& reques
     if (triangles) row.add("open_edges", r.open_edges).add("area", r.area);
     const bool encloses = r.closed() && r.triangles > 0;
     if (alone && triangles) row.add("volume", encloses ? Cell(std::abs(r.volume)) : Cell());
-    row.add("seconds", d.seconds);
+    const auto of_walk = [&](auto cost) { return d.shares_walk ? Cell() : Cell(cost); };
+    row.add("seconds", of_walk(d.seconds));
     if (request.has_two_surfaces()) {
         row.add("isosurface_triangles", d.isosurface_report.triangles);
         row.add("isosurface_open_edges", d.isosurface_report.open_edges);
@@ -74,13 +77,14 @@ Row row_of(const Drawn& d, const DrawnField& field, const DrawingRequest& reques
         row.add("nonmanifold_vertices", r.nonmanifold_vertices);
     }
     const nestgrid::TraversalCounts& counts = d.result.counts;
-    row.add("inspect_calls", counts.calls).add("visited", counts.visited);
-    row.add("extracted", counts.extracted);
+    row.add("inspect_calls", of_walk(counts.calls)).add("visited", of_walk(counts.visited));
+    row.add("extracted", of_walk(counts.extracted));
     if (d.search.max_triangles > 0) {
         row.add("search_trials", static_cast<std::uint64_t>(d.search.trials));
         row.add("search_triangles", d.search.extracted).add("search_seconds", d.search_seconds);
     }
-    return row.add("peak_bytes", d.peak_bytes).add("stack_bytes", d.result.stack_bytes);
+    row.add("peak_bytes", of_walk(d.peak_bytes));
+    return row.add("stack_bytes", of_walk(d.result.stack_bytes));
 }
 
 /// One row for each value: how many lines have it, and their lengths together.
@@ -103,7 +107,9 @@ void report_isolines(const Drawn& d, const std::vector<double>& values, Report& 
 void report_facts(const DrawnField& field, const DrawingRequest& request, Report& report) {
     report_field(field.name, field.length_unit, report);
     report_range({field.least, field.greatest}, report);
-    if (request.isovalue) report.add("isovalue", *request.isovalue);
+    if (request.has_isovalue() && !request.has_several_isovalues()) {
+        report.add("isovalue", request.isovalues.front());
+    }
     if (request.upper) report.add("upper_isovalue", *request.upper);
     report.add("nodes", std::uint64_t{field.nodes});
     report.add("leaf_elements", std::uint64_t{field.leaf_elements});
@@ -179,16 +185,26 @@ void say_how_finely(const Drawn& d, Report& report) {
 }  // namespace
 
 std::string why_empty(const DrawingRequest& request, double least, double greatest) {
-    const double low = *request.isovalue;
-    const double high = request.upper.value_or(low);
-    const auto texts = distinct_texts({low, high, least, greatest});
-    const std::string range = "the range " + texts[2] + " to " + texts[3] + " of the data";
-    if (least == greatest) return "the data have the value " + texts[2] + " everywhere";
-    if (request.upper && low < least && high > greatest) return "the band holds " + range;
-    if (high >= least && low <= greatest) return "";
-    const std::string what =
-        request.upper ? "the band " + texts[0] + " to " + texts[1] : "the isovalue " + texts[0];
-    return what + " is outside " + range;
+    std::vector<double> numbers{least, greatest};
+    numbers.insert(numbers.end(), request.isovalues.begin(), request.isovalues.end());
+    if (request.upper) numbers.push_back(*request.upper);
+    const auto texts = distinct_texts(numbers);
+    const std::string range = "the range " + texts[0] + " to " + texts[1] + " of the data";
+    if (least == greatest) return "the data have the value " + texts[0] + " everywhere";
+    if (request.upper) {
+        const double low = request.isovalues.front();
+        if (low<least&& * request.upper> greatest) return "the band holds " + range;
+        if (*request.upper >= least && low <= greatest) return "";
+        return "the band " + texts[2] + " to " + texts[3] + " is outside " + range;
+    }
+    std::vector<std::string> outside;
+    for (std::size_t i = 2; i < numbers.size(); ++i) {
+        if (numbers[i] < least || numbers[i] > greatest) outside.push_back(texts[i]);
+    }
+    if (outside.empty()) return "";
+    const bool one = outside.size() == 1;
+    return (one ? "the isovalue " : "the isovalues ") + joined(outside, "and") +
+           (one ? " is" : " are") + " outside " + range;
 }
 
 void report_drawn(const DrawnField& field, const DrawingRequest& request, Report& report) {
@@ -213,8 +229,13 @@ void report_drawn(const DrawnField& field, const DrawingRequest& request, Report
     const bool empty = std::ranges::all_of(field.surfaces, [&](const Drawn& d) {
         return (request.has_two_surfaces() ? d.isosurface_report : d.report).triangles == 0;
     });
-    if (empty && !field.outside.empty()) {
-        report.say((request.upper ? "the surface is empty: " : "the isosurface is empty: ") +
-                   field.outside);
+    if (field.outside.empty()) return;
+    if (empty) {
+        const std::string what = request.has_several_isovalues() ? "the isosurfaces are"
+                                 : request.upper                 ? "the surface is"
+                                                                 : "the isosurface is";
+        report.say(what + " empty: " + field.outside);
+    } else if (request.has_several_isovalues()) {
+        report.say(field.outside);
     }
 }

@@ -4,8 +4,8 @@
 
 #include "drawing/request.hpp"
 
-/// Why a value has no isosurface, or a band no surface; nothing where the range of the data lets
-/// them have one.
+/// Which values have no isosurface, or why a band has no surface; nothing where the range of the
+/// data lets all of them have one.
 std::string why_empty(const DrawingRequest& request, double least, double greatest);
 
 /// Facts about the field, one row of the table "surfaces" for each surface and one of "isolines"
