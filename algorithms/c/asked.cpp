@@ -30,6 +30,9 @@ static_assert(NESTGRID_NORM + 1 == names.size());
 void require_range(const nestgrid_options& options) {
     if (!(options.threshold >= 0)) throw InvalidInput("the threshold is negative or not a number");
     if (!(options.error >= 0)) throw InvalidInput("the error is negative or not a number");
+    if (!(options.position_error >= 0) || !std::isfinite(options.position_error)) {
+        throw InvalidInput("the error of positions is negative or not a finite number");
+    }
     if (options.indicator < NESTGRID_OFFSET || options.indicator > NESTGRID_NORM) {
         throw InvalidInput("the indicator " + std::to_string(options.indicator) +
                            " does not exist");
@@ -177,7 +180,8 @@ Projection Asked::projection(const FieldOnGrid& field, bool level_sets) const {
             .collapse = options_.collapse != 0,
             .keeps_distance = options_.keep_distance != 0,
             .slice_distance = options_.slice_distance,
-            .colour_tolerance = options_.colour_tolerance};
+            .colour_tolerance = options_.colour_tolerance,
+            .position_error = options_.position_error};
 }
 
 void Asked::require_one_process(const std::string& what) const {

@@ -37,6 +37,7 @@ int hand_over(Isolines result, nestgrid_lines* out) {
     told.visited = owned->counts.visited;
     told.extracted = owned->counts.extracted;
     told.cancelled = owned->cancelled ? 1 : 0;
+    told.position_bound = owned->position_bound;
     told.owner = owned.release();
     write_result(told, out);
     return 0;

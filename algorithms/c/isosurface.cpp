@@ -60,6 +60,7 @@ int draw_height_field(const Hierarchy<Real>& hierarchy, double scale, const Aske
     result.search = graph.search;
     result.surface = std::move(graph.surface);
     result.counts = graph.counts;
+    result.position_bound = graph.position_bound;
     result.cancelled = graph.cancelled;
     result.names = std::move(graph.names);
     hand_over(std::move(result), asked.part(), out);
@@ -132,6 +133,7 @@ nestgrid_surface_details details(const Drawn<dimension>& drawn) {
     d.surface_error = drawn.result.surface_error;
     d.cancelled = drawn.result.cancelled ? 1 : 0;
     d.budget_text = drawn.budget_text.c_str();
+    d.position_bound = drawn.result.position_bound;
     return d;
 }
 

@@ -187,6 +187,7 @@ module nestgrid
         type(c_ptr) :: region = c_null_ptr
         real(c_double) :: colour_tolerance = 0.0_c_double
         type(c_ptr) :: ranks = c_null_ptr
+        real(c_double) :: position_error = 0.0_c_double
     end type nestgrid_options
 
     type, bind(c) :: nestgrid_surface
@@ -235,6 +236,7 @@ module nestgrid
         real(c_double) :: surface_error = 0.0_c_double
         integer(c_int) :: cancelled = 0_c_int
         type(c_ptr) :: budget_text = c_null_ptr
+        real(c_double) :: position_bound = 0.0_c_double
     end type nestgrid_surface_details
 
     type, bind(c) :: nestgrid_joined
@@ -272,6 +274,7 @@ module nestgrid
         integer(c_int64_t) :: visited = 0_c_int64_t
         integer(c_int64_t) :: extracted = 0_c_int64_t
         integer(c_int) :: cancelled = 0_c_int
+        real(c_double) :: position_bound = 0.0_c_double
     end type nestgrid_lines
 
     type, bind(c) :: nestgrid_probed

@@ -144,6 +144,14 @@ TEST_F(RefusalsForC, OfProjectionsAreSentences) {
     start_again();
     options.colour_tolerance = -1;
     EXPECT_EQ(isosurface_says(), "the tolerance of colours is not a finite number >= 0");
+    start_again();
+    options.position_error = -1;
+    EXPECT_EQ(isosurface_says(), "the error of positions is negative or not a finite number");
+    options.position_error = 0.1;
+    options.error = 0.1;
+    EXPECT_EQ(isosurface_says(),
+              "an error of positions is asked for, which is for curved cells that are drawn within "
+              "an error");
     nestgrid_measured measured{};
     EXPECT_EQ(refusal([&](char* text, std::size_t size) {
                   return nestgrid_measure(nullptr, nullptr, nullptr, isovalue, 0, nullptr,

@@ -25,6 +25,7 @@ REASONS = {
     "g": "by C++ only: it is a function of the caller's own types",
     "h": "by Ctrl-C, or by the next request",
     "i": "printed with every surface",
+    "j": "it reads no data of higher degree",
 }
 FRONT_ENDS = ["C++", "C, Fortran", "program", "page", "Python", "VTK", "ParaView"]
 # Of each feature one cell for each front end: a name, or the letter of a reason.
@@ -53,6 +54,8 @@ TABLE = {
     "How finely": {
         "a threshold": "threshold threshold --threshold threshold threshold SetThreshold Threshold",
         "an error that is kept": "error_indicator error --error error error SetError Error",
+        "an error of positions": "position_error position_error --position-error j position_error SetProjection "
+        "PositionError",
         "a distance, estimated": "slope_deviations NESTGRID_SLOPE --distance distance distance SetIndicator "
         "Distance",
         "a distance that is kept": "isosurface_within keep_distance --distance-field a distance_field SetDistance "

@@ -33,27 +33,46 @@ void write(vtkImageData* image, const std::string& name) {
     writer->Write();
 }
 
-/// Solutions of degree 4 in hexahedra, and in quadrilaterals.
-void write_solutions(const std::string& folder) {
+/// Bends the unit cube into a part of a shell of radius 1 to 2, the square into one of a ring.
+nestgrid_test::Mesh bent(nestgrid_test::Mesh mesh) {
+    for (std::size_t i = 0; i < mesh.coordinates.size(); i += 3) {
+        double* const x = &mesh.coordinates[i];
+        const double radius = 1 + x[0];
+        const double along = 1.5 * x[1];
+        const double up = x[2];
+        x[0] = radius * std::cos(up) * std::cos(along);
+        x[1] = radius * std::cos(up) * std::sin(along);
+        x[2] = radius * std::sin(up);
+    }
+    return mesh;
+}
+
+/// A solution of degree p in hexahedra, or in quadrilaterals: in straight cells, or in curved ones.
+void write_solution(const std::string& name, int dimension, int p, bool curved) {
     using nestgrid::Point;
     using nestgrid::operator-;
-    for (const int dimension : {2, 3}) {
-        const vtkNew<vtkUnstructuredGrid> cells;
-        const nestgrid_test::Mesh mesh =
-            nestgrid_test::lagrange_box(dimension, 3, 4, {.own_points = true});
-        nestgrid_test::to_vtk(mesh, *cells);
-        const auto bump = [](const Point& x) {
-            const Point off = x - Point{0.35, 0.6, 0.4};
-            return std::exp(-12 * nestgrid::dot(off, off)) + x[0] / 5;
-        };
-        nestgrid_test::add_values(*cells, "u", bump);
-        nestgrid_test::add_values(*cells, "radius",
-                                  [](const Point& x) { return nestgrid::norm(x); });
-        const vtkNew<vtkXMLUnstructuredGridWriter> writer;
-        writer->SetInputData(cells);
-        writer->SetFileName((folder + (dimension == 3 ? "solution.vtu" : "plane.vtu")).c_str());
-        writer->Write();
-    }
+    const nestgrid_test::Mesh box =
+        nestgrid_test::lagrange_box(dimension, 3, p, {.own_points = true});
+    const nestgrid_test::Mesh mesh = curved ? bent(box) : box;
+    const vtkNew<vtkUnstructuredGrid> cells;
+    nestgrid_test::to_vtk(mesh, *cells);
+    const auto bump = [](const Point& x) {
+        const Point off = x - Point{0.35, 0.6, 0.4};
+        return std::exp(-12 * nestgrid::dot(off, off)) + x[0] / 5;
+    };
+    nestgrid_test::add_values(*cells, "u", bump);
+    nestgrid_test::add_values(*cells, "radius", [](const Point& x) { return nestgrid::norm(x); });
+    const vtkNew<vtkXMLUnstructuredGridWriter> writer;
+    writer->SetInputData(cells);
+    writer->SetFileName(name.c_str());
+    writer->Write();
+}
+
+void write_solutions(const std::string& folder) {
+    write_solution(folder + "solution.vtu", 3, 4, false);
+    write_solution(folder + "plane.vtu", 2, 4, false);
+    write_solution(folder + "shell.vtu", 3, 2, true);
+    write_solution(folder + "ring.vtu", 2, 2, true);
 }
 
 /// A ball of radius 50 and value 600 around the centre, and noise.

@@ -344,6 +344,16 @@ done
 echo "height --scale" >>covered
 effect surface quads.nestgrid --colour-tolerance 1e-4
 
+# Curved cells.
+declare -A curved=([isosurface]='shell.vtu --value 1.6' [band]='shell.vtu --low 1.2 --high 1.7'
+    [slice]='shell.vtu --plane 0.5,0.7,0.4,0.3,0.2,1' [boundary]=shell.vtu [isolines]='ring.vtu --count 3'
+    [height]='ring.vtu --scale 1' [surface]=ring.vtu)
+for command in "${!curved[@]}"; do
+    effect $command "${curved[$command]} --field radius --error 0.2" --position-error 0.01
+done
+void isosurface 'is for curved cells' "solution.vtu --field u --value 0.3 --error 0.2" --position-error 0.01
+void slice 'is for curved cells' "$raw --axis z --at 9" --position-error 0.01
+
 # Probes.
 printf '1,2,3\n4,5,6\n' >points.csv
 [[ "$(result probe $raw --points points.csv)" != refused:* ]] && echo "probe --points" >>covered

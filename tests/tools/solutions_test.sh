@@ -84,6 +84,50 @@ within 0.1 "a lens"
 run isosurface solution.vtu --field u --value 0.3 --lens ball:0.35,0.6,0.7,0.1 --finest 0.02 -o s.vtp
 grep -q 'drawn as finely as the lens asks$' out && [ "$(value open_edges)" = 0 ] || fail "a lens alone: $(cat out)"
 
+# Curved cells: no point is farther from its place than it may be, and nearer ones take more triangles.
+# placed PLACES WHAT: no open edge, and all bounds of positions at most so much.
+placed() {
+    within 0.2 "$2"
+    [ -n "$(value position_bound)" ] || fail "$2: no bound of positions: $(cat out)"
+    for bound in $(value position_bound); do
+        awk -v bound="$bound" -v places="$1" 'BEGIN { exit !(0 < bound && bound <= places * 1.00001) }' ||
+            fail "$2: points $bound off, not $1"
+    done
+    grep -q '^no point is farther than [0-9.e-]* from its place in the curved cells' out || fail "$2: $(cat out)"
+}
+declare -A of_curved=([isosurface]='shell.vtu --field radius --value 1.6' [band]='shell.vtu --field radius --low 1.2 --high 1.7'
+    [slice]='shell.vtu --field radius --plane 0.5,0.7,0.4,0.3,0.2,1' [boundary]='shell.vtu --field radius'
+    [isolines]='ring.vtu --field radius --values 1.2,1.7' [surface]='ring.vtu --field radius'
+    [height]='ring.vtu --field radius --scale 1')
+declare -A before=()
+for places in 0.03 0.01 0.003; do
+    for command in "${!of_curved[@]}"; do
+        run $command ${of_curved[$command]} --error 0.2 --position-error $places
+        placed $places "$command"
+        count=$(value triangles | tr -d ,)
+        [ "$count" -gt "${before[$command]:-0}" ] || fail "$command: $count triangles within $places"
+        before[$command]=$count
+    done
+    run slice ${of_curved[slice]} --with-isosurface 1.6 --error 0.2 --position-error $places
+    placed $places "slice with an isosurface"
+    run isosurface ring.vtu --field radius --value 1.6 --error 0.2 --position-error $places
+    placed $places "isosurface of a ring"
+done
+run isosurface ${of_curved[isosurface]} --position-error 0.01 --max-triangles 5000
+placed 0.01 "a number of triangles"
+run isosurface ${of_curved[isosurface]} --position-error 0.01 --lens ball:1,1,1,0.2 --finest 0.1
+[ "$(awk -v bound="$(value position_bound)" 'BEGIN { print (bound <= 0.0100001) }')" = 1 ] || fail "a lens: $(cat out)"
+for straight in 'solution.vtu --field u --value 0.3' 'v.vti --value 130' 'v.vti --value 130 --error 1'; do
+    refused 1 '^[^ ]* --position-error is for curved cells, and all of this grid are straight$' \
+        isosurface $straight --position-error 1 -o x.vtp
+done
+refused 1 '--position-error is for curved cells' slice v.vti --axis z --at 9 --position-error 1 -o x.vtp
+for number in 0 -1 nan inf; do
+    refused 2 'position-error: .* no positive finite number' isosurface ${of_curved[isosurface]} --position-error $number
+done
+refused 1 'tolerance of positions is below 1e-12 of the diameter' isosurface ${of_curved[isosurface]} --position-error 1e-15
+refused 2 'excludes' isosurface ${of_curved[isosurface]} --position-error 0.1 --threshold 0.1
+
 # Without an error.
 run isosurface solution.vtu --field u --value 0.3
 grep -q 'about a thousandth of their range: --error chooses another$' out || fail "no word on the error: $(cat out)"

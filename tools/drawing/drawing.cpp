@@ -42,6 +42,13 @@ std::string millions(std::uint64_t count) {
            " million";
 }
 
+/// Within an error of polynomials that is still to be said.
+Projection within_error(const SurfaceOptions& options, const DrawingRequest& request) {
+    return {.indicator = "error",
+            .lens = request.lens,
+            .position_error = options.projection.position_error};
+}
+
 /// Tells the steps of a drawing, and measures them.
 class Steps {
 public:
@@ -127,7 +134,7 @@ private:
                         ? shading(prerolls(), projection, options, work)
                         : height_field(prerolls(), request_.scale, projection, options, work);
         take_facts(drawn, grid);
-        drawn.result = {grid, std::move(grid.surface), grid.counts};
+        drawn.result = {grid, std::move(grid.surface), grid.counts, grid.position_bound};
     }
     /// At threshold 0 a slice stops where one does beside an isosurface. Without a threshold it
     /// needs no preroll, and stops nowhere.
@@ -195,6 +202,8 @@ private:
         auto surfaces = slices(prerolls(), both, projection,
                                {.cap = request_.cap, .elements = keeps_elements()}, work);
         drawn.result = std::move(surfaces[0]);
+        drawn.result.position_bound =
+            std::max(drawn.result.position_bound, surfaces[1].position_bound);
         drawn.isosurface = std::move(surfaces[1].surface);
         if (tolerance == 0) return;
         refine_colours(drawn.result.surface, prerolls(), tolerance, projection, work);
@@ -207,7 +216,7 @@ private:
             return count_triangles(prerolls(), both, at, most, {}, {work.executor});
         };
         if (const std::shared_ptr<const nestgrid::HighOrder> data = moment_.high_order()) {
-            Projection within{.indicator = "error", .lens = request_.lens};
+            Projection within = within_error(options_, request_);
             return nestgrid::least_threshold(
                 [&](double error, std::uint64_t most) {
                     within.threshold = error;
@@ -237,7 +246,7 @@ private:
     }
     static void take_lines(Drawn& drawn, nestgrid::Isosurface<2> lines) {
         drawn.segments = std::move(lines.surface);
-        drawn.result = {lines, {}, lines.counts};
+        drawn.result = {lines, {}, lines.counts, lines.position_bound};
         drawn.result.surface_error = lines.surface_error;
         drawn.result.stack_bytes = lines.stack_bytes;
     }
@@ -310,7 +319,7 @@ void require_error_alone(const DrawingRequest& request, const SurfaceOptions& op
 void draw_polynomials(const nestgrid::HighOrder& data, const Moment& moment,
                       const SurfaceOptions& options, const DrawingRequest& request,
                       const Drawing& drawing, const TakeWalk& take) {
-    const Projection within{.indicator = "error", .lens = request.lens};
+    const Projection within = within_error(options, request);
     std::vector<Projection> asked;
     for (const std::int64_t budget : options.budgets) {
         asked.push_back(within);
@@ -327,6 +336,7 @@ void draw_polynomials(const nestgrid::HighOrder& data, const Moment& moment,
         Drawn drawn;
         drawn.by_default = by_default;
         drawn.degree = data.greatest_degree();
+        drawn.curved = data.geometry_degree() > 1;
         take(drawing.draw(projection, std::move(drawn)));
     }
 }
@@ -342,7 +352,13 @@ void draw_moment(const Moment& moment, const nestgrid::Executor& executor,
                  const SurfaceOptions& options, const DrawingRequest& request, const Telling& tell,
                  const TakeWalk& take) {
     const Drawing drawing(moment, executor, options, request, tell);
-    if (const std::shared_ptr<const nestgrid::HighOrder> data = moment.high_order()) {
+    const std::shared_ptr<const nestgrid::HighOrder> data = moment.high_order();
+    const bool curved = data != nullptr && data->geometry_degree() > 1;
+    if (options.projection.position_error > 0 && !curved) {
+        throw InvalidInput(
+            "--position-error is for curved cells, and all of this grid are straight");
+    }
+    if (data != nullptr) {
         require_error_alone(request, options, data->greatest_degree());
         return draw_polynomials(*data, moment, options, request, drawing, take);
     }

@@ -89,6 +89,7 @@ struct Drawn {
     bool shares_walk = false;
     double threshold = 0;
     int degree = 1;                   ///< of the polynomials within an error of which it is drawn
+    bool curved = false;              ///< whether it is drawn of curved cells
     bool by_default = false;          ///< whether nobody has asked for that error
     nestgrid::TriangleBudget search;  ///< of the threshold; max_triangles is 0 where none was
     double search_seconds = 0;

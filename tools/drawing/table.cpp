@@ -52,6 +52,7 @@ Row row_of(const Drawn& d, const DrawnField& field, const DrawingRequest& reques
     Row row = begin_row(d);
     row.add(triangles ? "triangles" : "segments", r.triangles).add("vertices", r.vertices);
     row.add("error_bound", bound_of(d.result));
+    if (d.curved) row.add("position_bound", d.result.position_bound);
     if (is_promised(d, request)) row.add("surface_error", d.result.surface_error);
     if (triangles) row.add("open_edges", r.open_edges).add("area", r.area);
     const bool encloses = r.closed() && r.triangles > 0;
@@ -176,6 +177,14 @@ void say_how_finely(const Drawn& d, Report& report) {
             d.by_default ? ", about a thousandth of their range: --error chooses another" : "");
     }
     report.say(text.data());
+    if (d.curved) {
+        std::snprintf(
+            text.data(), text.size(),
+            "no point is farther than %.4g from its place in the curved cells, in the unit "
+            "of the grid",
+            d.result.position_bound);
+        report.say(text.data());
+    }
     if (d.result.counts.limited == 0) return;
     report.say(grouped(d.result.counts.limited) +
                " elements were halved as often as they may be, and are further off: the error "
@@ -220,7 +229,7 @@ void report_drawn(const DrawnField& field, const DrawingRequest& request, Report
         say_what_is_promised(field.surfaces.front(), report);
     }
     for (const Drawn& d : field.surfaces) {
-        if (d.degree > 1) say_how_finely(d, report);
+        if (d.degree > 1 || d.curved) say_how_finely(d, report);
     }
     if (std::ranges::any_of(field.surfaces,
                             [](const Drawn& d) { return d.result.bound_says_nothing(); })) {

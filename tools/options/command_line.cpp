@@ -252,6 +252,15 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options, bool of_iso
         ->excludes("--max-triangles");
     command
         .add_option(
+            "--position-error", options.projection.position_error,
+            "let points of curved cells be drawn at most this far from their places, in the "
+            "unit of the grid [the same share of the domain as the error is of the range]")
+        ->type_name("LENGTH")
+        ->group("Detail")
+        ->check(positive_number)
+        ->excludes("--threshold");
+    command
+        .add_option(
             "-o,--output", options.output,
             "write " + joined(endings_for(&Format::write_surface), "or") + "; - is standard output")
         ->type_name("FILE");

@@ -11,6 +11,7 @@ from __future__ import annotations
 import difflib
 import functools
 import inspect
+import math
 import operator
 import os
 import textwrap
@@ -90,6 +91,13 @@ def not_negative(value: Any) -> float:
     result = number(value)
     if not result >= 0:
         raise Unfit(f"is not a number >= 0: it is {result:g}", InvalidInput)
+    return result
+
+
+def positive(value: Any) -> float:
+    result = number(value)
+    if not 0 < result < math.inf:
+        raise Unfit(f"is not a finite number > 0: it is {result:g}", InvalidInput)
     return result
 
 
@@ -294,6 +302,11 @@ SHARED = {
         optional(not_negative),
         "at least 0, in the place of threshold, max_triangles and indicator: the data and their "
         "projection, which is drawn, differ by at most this, in units of the data",
+    ),
+    "position_error": Argument(
+        optional(positive),
+        "how far points of curved cells may be from where they are drawn, in units of length; "
+        "None: the same share of the domain as error is of the range. For curved cells alone",
     ),
     "max_triangles": Argument(
         optional(whole(1)),

@@ -109,6 +109,7 @@ class Field:
         lens: LensLike | None = None,
         region: RegionLike | None = None,
         error: float | None = None,
+        position_error: float | None = None,
         distance: float | None = None,
         distance_field: bool = False,
         collapse: bool = False,
@@ -147,7 +148,8 @@ class Field:
         coarsest surface has more than max_triangles; GridError where the grid cannot be drawn.
         """
         projection = surface_projection_of(
-            threshold, max_triangles, indicator, blend, lens, error, distance, collapse, region
+            threshold, max_triangles, indicator, blend, lens, error, distance, collapse, region,
+            position_error,
         )
         if collapse:
             kept = error is not None or distance is not None or max_triangles is not None
@@ -191,6 +193,7 @@ class Field:
         lens: LensLike | None = None,
         region: RegionLike | None = None,
         error: float | None = None,
+        position_error: float | None = None,
         normals: bool = True,
         cap: bool = False,
         at_nodes: bool = False,
@@ -211,10 +214,13 @@ class Field:
         Raises InvalidInput as isosurface().
         """
         if error is None:
-            projection = projection_of(threshold, None, indicator, blend, lens, None, region)
+            projection = projection_of(
+                threshold, None, indicator, blend, lens, None, region, 0, position_error
+            )
         else:
             projection = surface_projection_of(
-                threshold, None, indicator, blend, lens, error, None, False, region
+                threshold, None, indicator, blend, lens, error, None, False, region,
+                position_error,
             )
         options = (normals, cap, elements, at_nodes, cuts == "finest")
         drawn = _nestgrid.isosurfaces(
@@ -254,6 +260,7 @@ class Field:
         lens: LensLike | None = None,
         region: RegionLike | None = None,
         error: float | None = None,
+        position_error: float | None = None,
         normals: bool = True,
         elements: bool = False,
         threads: int = 0,
@@ -266,7 +273,9 @@ class Field:
         It is open on the boundary of the domain only. Raises InvalidInput also unless low < high,
         and for a field of dimension 2.
         """
-        projection = projection_of(threshold, max_triangles, indicator, blend, lens, error, region)
+        projection = projection_of(
+            threshold, max_triangles, indicator, blend, lens, error, region, 0, position_error
+        )
         options = (low, high, normals, elements)
         return Surface._of(_nestgrid.isoband(self._source, *options, projection, threads), self)
 
@@ -281,6 +290,7 @@ class Field:
         lens: LensLike | None = None,
         region: RegionLike | None = None,
         error: float | None = None,
+        position_error: float | None = None,
         collapse: bool = False,
         colour_tolerance: float = 0,
         elements: bool = False,
@@ -297,7 +307,7 @@ class Field:
         """
         projection = coloured_projection_of(
             threshold, max_triangles, indicator, blend, lens, error, region, collapse,
-            colour_tolerance
+            colour_tolerance, position_error
         )
         options = (elements, collapse)
         return Surface._of(
@@ -325,6 +335,7 @@ class Field:
         lens: LensLike | None = None,
         region: RegionLike | None = None,
         error: float | None = None,
+        position_error: float | None = None,
         distance: float | None = None,
         collapse: bool = False,
         colour_tolerance: float = 0,
@@ -360,7 +371,7 @@ class Field:
                 raise InvalidInput("distance is not a number > 0: leave it out to keep the place")
         projection = coloured_projection_of(
             threshold, max_triangles, indicator, blend, lens, error, region, collapse,
-            colour_tolerance
+            colour_tolerance, position_error
         )
         options = (normals, elements, collapse, distance or 0)
         return Surface._of(
@@ -379,6 +390,7 @@ class Field:
         lens: LensLike | None = None,
         region: RegionLike | None = None,
         error: float | None = None,
+        position_error: float | None = None,
         threads: int = 0,
     ) -> Lines:
         """Lines on which a two-dimensional field has the given values, in one pass.
@@ -388,7 +400,9 @@ class Field:
 
         Raises InvalidInput also for a field of dimension 3: its slices have isolines().
         """
-        projection = projection_of(threshold, max_segments, indicator, blend, lens, error, region)
+        projection = projection_of(
+            threshold, max_segments, indicator, blend, lens, error, region, 0, position_error
+        )
         return Lines._of(
             _nestgrid.isolines(self._source, several(values), projection, threads), self
         )
@@ -406,6 +420,7 @@ class Field:
         lens: LensLike | None = None,
         region: RegionLike | None = None,
         error: float | None = None,
+        position_error: float | None = None,
         collapse: bool = False,
         elements: bool = False,
         threads: int = 0,
@@ -422,7 +437,8 @@ class Field:
         are more than max_triangles.
         """
         projection = coloured_projection_of(
-            threshold, max_triangles, indicator, blend, lens, error, region, collapse, 0
+            threshold, max_triangles, indicator, blend, lens, error, region, collapse, 0,
+            position_error,
         )
         options = (scale, flatness, elements, collapse)
         return Surface._of(
@@ -440,6 +456,7 @@ class Field:
         lens: LensLike | None = None,
         region: RegionLike | None = None,
         error: float | None = None,
+        position_error: float | None = None,
         threads: int = 0,
     ) -> np.ndarray:
         """The field at points, float64 of their shape without the last axis; nan outside.
@@ -453,7 +470,9 @@ class Field:
             raise InvalidInput(f"probe(): points have {width} coordinates, not {self.dimension}")
         at = np.zeros((*points.shape[:-1], 3))
         at[..., :width] = points
-        projection = projection_of(threshold, None, indicator, blend, lens, error, region)
+        projection = projection_of(
+            threshold, None, indicator, blend, lens, error, region, 0, position_error
+        )
         return _nestgrid.probe(self._source, at, projection, threads).reshape(points.shape[:-1])
 
     def _size(self) -> str:

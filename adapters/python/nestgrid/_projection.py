@@ -22,13 +22,18 @@ def surface_projection_of(
     distance: float | None,
     collapse: bool,
     region: RegionLike | None,
+    position_error: float | None,
 ) -> _nestgrid.Projection:
     """The projection of an isosurface, which has an error and a distance of its own."""
     if collapse and max_triangles is not None and (threshold, error, distance) == (None,) * 3:
         least: Literal["error", "slope"] = "slope" if indicator == "slope" else "error"
-        return _nestgrid.Projection(None, max_triangles, least, blend, None, None, 0)
+        return _nestgrid.Projection(
+            None, max_triangles, least, blend, None, None, 0, position_error
+        )
     if error is None and distance is None:
-        return projection_of(threshold, max_triangles, indicator, blend, lens, None, region)
+        return projection_of(
+            threshold, max_triangles, indicator, blend, lens, None, region, 0, position_error
+        )
     name = "distance" if error is None else "error"
     value = distance if error is None else error
     alone = (threshold, max_triangles, indicator) == (None, None, "offset")
@@ -38,7 +43,7 @@ def surface_projection_of(
         raise InvalidInput(f"{name} is not a number > 0: leave it out to draw all detail")
     measured: Literal["error", "slope"] = "slope" if error is None else "error"
     where = _where(lens, region)
-    return _nestgrid.Projection(value, None, measured, blend, *where, 0)
+    return _nestgrid.Projection(value, None, measured, blend, *where, 0, position_error)
 
 
 def coloured_projection_of(
@@ -51,11 +56,13 @@ def coloured_projection_of(
     region: RegionLike | None,
     collapse: bool,
     colour_tolerance: float,
+    position_error: float | None,
 ) -> _nestgrid.Projection:
     """The projection of a surface in the colours of the field."""
     if not collapse:
         return projection_of(
-            threshold, max_triangles, indicator, blend, lens, error, region, colour_tolerance
+            threshold, max_triangles, indicator, blend, lens, error, region, colour_tolerance,
+            position_error,
         )
     kept = (error is None) != (max_triangles is None)
     if not kept or lens is not None or region is not None or indicator != "offset":
@@ -64,12 +71,13 @@ def coloured_projection_of(
         )
     if max_triangles is None:
         return projection_of(
-            threshold, None, indicator, blend, None, error, None, colour_tolerance
+            threshold, None, indicator, blend, None, error, None, colour_tolerance,
+            position_error,
         )
     if threshold is not None:
         raise InvalidInput("max_triangles is given alone: it finds the threshold")
     return _nestgrid.Projection(
-        None, max_triangles, "error", blend, None, None, colour_tolerance
+        None, max_triangles, "error", blend, None, None, colour_tolerance, position_error
     )
 
 
@@ -91,6 +99,7 @@ def projection_of(
     error: float | None,
     region: RegionLike | None,
     colour_tolerance: float = 0,
+    position_error: float | None = None,
 ) -> _nestgrid.Projection:
     if threshold is not None and max_triangles is not None:
         raise InvalidInput("max_triangles is given alone: it finds the threshold")
@@ -100,5 +109,5 @@ def projection_of(
         threshold, indicator = error, "deviation"
     where = _where(lens, region)
     return _nestgrid.Projection(
-        threshold, max_triangles, indicator, blend, *where, colour_tolerance
+        threshold, max_triangles, indicator, blend, *where, colour_tolerance, position_error
     )

@@ -140,6 +140,15 @@ class _Result(_Extracted):
         return bool(self._data.bound_says_nothing)
 
     @property
+    def position_bound(self) -> float:
+        """On curved cells no point is farther from its place, in units of length.
+
+        Of a height field, before it is lifted; 0 where all cells are straight.
+        """
+        bound: float = self._data.position_bound
+        return bound
+
+    @property
     def threshold(self) -> float:
         """The threshold that was used, found or given."""
         return self._data.threshold

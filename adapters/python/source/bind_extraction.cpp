@@ -97,7 +97,8 @@ void bind_requests(py::module_& m) {
     py::class_<Projection>(m, "Projection")
         .def(py::init([](std::optional<double> threshold, std::optional<std::uint64_t> triangles,
                          std::string indicator, double blend, std::optional<LensRequest> lens,
-                         std::optional<RegionRequest> region, double colour_tolerance) {
+                         std::optional<RegionRequest> region, double colour_tolerance,
+                         std::optional<double> position_error) {
                  if (triangles == std::uint64_t{0}) throw InvalidInput("max_triangles is 0");
                  return Projection{.threshold = threshold,
                                    .max_triangles = triangles.value_or(0),
@@ -105,10 +106,12 @@ void bind_requests(py::module_& m) {
                                    .blend = blend,
                                    .lens = std::move(lens),
                                    .region = std::move(region),
-                                   .colour_tolerance = colour_tolerance};
+                                   .colour_tolerance = colour_tolerance,
+                                   .position_error = position_error.value_or(0)};
              }),
              py::arg("threshold"), py::arg("max_triangles"), py::arg("indicator"), py::arg("blend"),
-             py::arg("lens"), py::arg("region"), py::arg("colour_tolerance"));
+             py::arg("lens"), py::arg("region"), py::arg("colour_tolerance"),
+             py::arg("position_error"));
     m.def("indicators", [] {
         std::vector<std::tuple<std::string, std::string, std::string, bool>> all;
         for (const IndicatorKind& kind : indicators()) {

@@ -61,7 +61,7 @@ py::dict report_of(const std::shared_ptr<Drawn>& drawn) {
 template <class Result>
 py::tuple numbers_of(const Result& r) {
     return py::make_tuple(r.error_bound, r.range_bound, r.threshold, r.counts.calls,
-                          r.counts.visited, r.counts.extracted);
+                          r.counts.visited, r.counts.extracted, r.position_bound);
 }
 template <class Result>
 void set_numbers(Result& r, const py::tuple& numbers) {
@@ -70,6 +70,7 @@ void set_numbers(Result& r, const py::tuple& numbers) {
     r.threshold = numbers[2].cast<double>();
     r.counts = {numbers[3].cast<std::uint64_t>(), numbers[4].cast<std::uint64_t>(),
                 numbers[5].cast<std::uint64_t>()};
+    r.position_bound = numbers[6].cast<double>();
 }
 
 /// A copy of the memory of an array as values of another type with the same bytes.
@@ -156,6 +157,7 @@ void bind_numbers(py::class_<Result, std::shared_ptr<Result>>& c) {
         .def_property_readonly("bound_says_nothing",
                                [](const Result& r) { return r.bound_says_nothing(); })
         .def_readonly("threshold", &Result::threshold)
+        .def_readonly("position_bound", &Result::position_bound)
         .def_property_readonly("counts", [](const Result& r) { return counts_of(r.counts); });
 }
 
@@ -199,9 +201,10 @@ void bind_surface(py::module_& m) {
             [](const std::shared_ptr<Drawn>& d, const std::vector<double>& values,
                std::size_t attribute) {
                 return interruptible(1, [d, values, attribute](const Call&) {
-                    return std::make_shared<DrawnLines>(DrawnLines{
-                        static_cast<const ErrorBounds&>(*d),
-                        isolines(d->surface, attribute, values), d->counts, d->threshold, false});
+                    return std::make_shared<DrawnLines>(
+                        DrawnLines{static_cast<const ErrorBounds&>(*d),
+                                   isolines(d->surface, attribute, values), d->counts, d->threshold,
+                                   d->position_bound, false});
                 });
             },
             py::arg("values"), py::arg("attribute"));

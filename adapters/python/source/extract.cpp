@@ -38,6 +38,7 @@ Drawn drawn_of(Projected<Result> result, double surface_error) {
             std::move(result.surface),
             result.counts,
             result.search.threshold,
+            result.position_bound,
             surface_error,
             result.budget_reason(),
             result.cancelled};
@@ -93,8 +94,12 @@ DrawnLines draw_isolines(const Source& source, std::span<const double> values,
     Projected<Isolines> result =
         isolines(source.prerolls(), values, asked(source, projection, {}, call),
                  {.progress = progress_of(call)}, call.work());
-    return {static_cast<const ErrorBounds&>(result), std::move(result.lines), result.counts,
-            result.search.threshold, result.cancelled};
+    return {static_cast<const ErrorBounds&>(result),
+            std::move(result.lines),
+            result.counts,
+            result.search.threshold,
+            result.position_bound,
+            result.cancelled};
 }
 
 Drawn draw_height_field(const Source& source, std::optional<double> scale, double flatness,

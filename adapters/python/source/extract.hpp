@@ -25,7 +25,8 @@ struct Drawn : ErrorBounds {
     Surface<3> surface;
     TraversalCounts counts;
     double threshold = 0;
-    double surface_error = std::numeric_limits<double>::infinity();  ///< as of Isosurface
+    double position_bound = 0;                                       ///< as of Isosurface
+    double surface_error = std::numeric_limits<double>::infinity();  ///< so, too
     std::string budget_reason;  ///< why there are fewer triangles than max_triangles, or empty
     bool cancelled = false;
 };
@@ -33,6 +34,7 @@ struct DrawnLines : ErrorBounds {
     Polylines lines;
     TraversalCounts counts;
     double threshold = 0;
+    double position_bound = 0;
     bool cancelled = false;
 };
 

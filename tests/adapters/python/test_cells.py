@@ -208,3 +208,44 @@ def test_curved_cells_are_drawn_where_they_are():
     heights = nestgrid.Cells(bent, *cells, points[:, 2]).isosurface(0.4, error=1e-3)
     x = heights.vertices
     assert np.abs(x[:, 2] - 0.4 - 0.3 * x[:, 0] ** 2).max() < 5e-3
+
+
+def test_points_of_curved_cells_keep_their_error():
+    points, *cells = box(3, 3, 2)
+    bent = points.copy()
+    bent[:, 2] += 0.3 * points[:, 0] ** 2
+    field = nestgrid.Cells(bent, *cells, points[:, 2])
+    flat, *quadrilaterals = box(2, 3, 2)
+    curve = flat.copy()
+    curve[:, 1] += 0.3 * flat[:, 0] ** 2
+    plane = nestgrid.Cells(curve, *quadrilaterals, flat[:, 1])
+    drawings = {
+        "isosurface": lambda **fine: field.isosurface(0.4, **fine),
+        "isosurfaces": lambda **fine: field.isosurfaces([0.4], **fine)[0],
+        "isoband": lambda **fine: field.isoband(0.3, 0.6, **fine),
+        "boundary": field.boundary,
+        "slice": lambda **fine: field.slice(plane=((0.5, 0.5, 0.5), (0.2, 0.3, 1)), **fine),
+        "isolines": lambda **fine: plane.isolines(0.4, **fine),
+        "height_field": plane.height_field,
+    }
+    for name, draw in drawings.items():
+        before = 0
+        for places in (0.03, 0.003, 0.0003):
+            drawn = draw(error=0.2, position_error=places)
+            assert 0 < drawn.position_bound <= places * 1.00001, name
+            assert len(drawn.vertices) > before, name
+            before = len(drawn.vertices)
+        assert pickle.loads(pickle.dumps(drawn)).position_bound == drawn.position_bound
+        assert draw(error=0.2).position_bound > 0.0003, name
+        for wrong in (0, -1, np.nan, np.inf):
+            with pytest.raises(nestgrid.InvalidInput, match="position_error is not a finite number > 0"):
+                draw(error=0.2, position_error=wrong)
+    # At (0.5, 0.475) the field is 0.4, less what straight lines leave out of the curve.
+    off = [abs(plane.probe([0.25, 0.41875], error=0.2, position_error=p) - 0.4) for p in (0.03, 0.0003)]
+    assert off[1] < off[0] and off[1] < 0.001
+    straight = nestgrid.Cells(points, *cells, waves(points))
+    with pytest.raises(nestgrid.InvalidInput, match="for curved cells"):
+        straight.isosurface(0.4, error=0.1, position_error=0.1)
+    assert straight.isosurface(0.4, error=0.1).position_bound == 0
+    with pytest.raises(nestgrid.InvalidInput, match="for curved cells"):
+        nestgrid.Volume(np.random.default_rng(1).random((5, 5, 5))).isosurface(0.5, error=0.1, position_error=0.1)

@@ -34,6 +34,8 @@ typedef struct nestgrid_lines {
     uint64_t visited;   /* elements that passed the test of interest */
     uint64_t extracted; /* elements that contribute, once for each value */
     int cancelled;      /* 1 where progress ended it: the lines are a part */
+    /* On curved leaves, as of nestgrid_surface_details; 0 on surfaces. */
+    double position_bound;
 } nestgrid_lines;
 
 /** The isolines of component 0 of a field on a grid of dimension 2. Vertices carry the other

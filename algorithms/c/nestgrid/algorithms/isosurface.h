@@ -56,6 +56,9 @@ typedef struct nestgrid_surface_details {
     double surface_error;
     int cancelled;           /* 1 where progress ended it: the surface is a part */
     const char* budget_text; /* why there are fewer than max_triangles, a sentence or "" */
+    /* On curved leaves no point of the surface is farther from its true place, in units of length;
+     * of a height field, in the plane. 0 where leaves are straight. */
+    double position_bound;
 } nestgrid_surface_details;
 
 /** The isosurface of a field of one component under the hierarchical indicator with the given

@@ -112,6 +112,10 @@ typedef struct nestgrid_options {
      * with the same options, and each gets its piece (docs/distributed.md). With prerolls, what
      * ranks share is kept, too: make other prerolls where the grid or its values have changed. */
     const nestgrid_ranks* ranks;
+    /* Above 0, in units of length, beside an error: points of curved leaves are at most this far
+     * from where they are drawn. 0: the same share of the diameter of the domain as the error is
+     * of the range of the data. Refused where leaves are straight. */
+    double position_error;
 } nestgrid_options;
 
 /** Makes empty prerolls. Returns 0, or another number and a sentence, as isosurface.h says. Free

@@ -270,8 +270,11 @@ def check_planes():
     assert fetch(pv.NestgridIsosurface(Input=wavelet)).GetNumberOfCells() == 0
 
 
-def check_unstructured_grid():
-    """Lagrange hexahedra of degree 3, read by ParaView."""
+def lagrange_file(name, bend):
+    """Lagrange hexahedra of degree 3, read by ParaView, and their field.
+
+    bend  by how much x^2 moves points upwards
+    """
     grid = vtkUnstructuredGrid()
     points, values = vtkPoints(), vtkDoubleArray()
     values.SetName("u")
@@ -283,17 +286,21 @@ def check_unstructured_grid():
         for node in nodes:
             x = (cell + node / 3) / 2
             place = vtkLagrangeHexahedron.PointIndexFromIJK(*map(int, node), [3, 3, 3])
-            ids.SetId(place, points.InsertNextPoint(*x))
+            ids.SetId(place, points.InsertNextPoint(x[0], x[1], x[2] + bend * x[0] ** 2))
             values.InsertNextValue(np.sin(5 * x[0]) * np.cos(4 * x[1]) + x[2] ** 2)
         grid.InsertNextCell(72, ids)
     grid.SetPoints(points)
     grid.GetPointData().AddArray(values)
     writer = vtkXMLUnstructuredGridWriter()
-    writer.SetFileName(os.path.join(folder, "solution.vtu"))
+    writer.SetFileName(os.path.join(folder, name))
     writer.SetInputData(grid)
     assert writer.Write()
-    reader = pv.XMLUnstructuredGridReader(FileName=[os.path.join(folder, "solution.vtu")])
-    expected = field_of(grid, values)
+    reader = pv.XMLUnstructuredGridReader(FileName=[os.path.join(folder, name)])
+    return reader, field_of(grid, values)
+
+
+def check_unstructured_grid():
+    reader, expected = lagrange_file("solution.vtu", 0)
     filter = pv.NestgridIsosurface(Input=reader)
     filter.Scalars = ["POINTS", "u"]
     filter.Isovalue = 0.4
@@ -307,6 +314,16 @@ def check_unstructured_grid():
     same(data, expected.slice(plane=((0.5, 0.4, 0.45), (1, 2, 3)), error=0.02))
     filter.MaxTriangles, filter.Error = 3000, 0
     same(fetch(filter), expected.isosurface(0.4, max_triangles=3000))
+    reader, expected = lagrange_file("curved.vtu", 0.3)
+    filter = pv.NestgridIsosurface(Input=reader)
+    filter.Scalars = ["POINTS", "u"]
+    filter.Isovalue, filter.Error = 0.4, 0.2
+    counts = []
+    for places in (0.03, 0.003):
+        filter.PositionError = places
+        same(fetch(filter), expected.isosurface(0.4, error=0.2, position_error=places))
+        counts.append(fetch(filter).GetNumberOfPolys())
+    assert counts[0] < counts[1], counts
 
 
 def check_hyper_tree_grid():

@@ -209,6 +209,14 @@ COLOUR_TOLERANCE = """
   the data; 0: not at all. Not with collapses, nor with a number of triangles.</Documentation>
 </DoubleVectorProperty>
 """
+POSITION_ERROR = """
+<DoubleVectorProperty name="PositionError" command="SetPositionError" number_of_elements="1"
+    default_values="0" panel_visibility="advanced">
+  <DoubleRangeDomain name="range" min="0"/>
+  <Documentation>How far points of curved cells may be from where they are drawn, in units of
+  length; 0: the same share of the domain as the error is of the range of the data.</Documentation>
+</DoubleVectorProperty>
+"""
 BAND = """
 <DoubleVectorProperty name="Band" command="SetBand" number_of_elements="2" default_values="0 1">
   <ArrayRangeDomain name="range">
@@ -266,7 +274,7 @@ SHAPE = """
   data, there and back, in units of length; 0: it keeps its place.</Documentation>
 </DoubleVectorProperty>
 """
-WHERE = (BLEND, LENS, REGION)
+WHERE = (BLEND, LENS, REGION, POSITION_ERROR)
 OF_SURFACES = (OUTLINES, *WHERE)
 INPUT = """
 <InputProperty name="Input" command="SetInputConnection">
@@ -337,6 +345,7 @@ class Drawing(VTKPythonAlgorithmBase):
         self._lens = {"centre": (0.0, 0.0, 0.0), "radius": 0.0}
         self._region = {"bounds": (0.0,) * 6, "threshold": 0.0}
         self._colours = {"colour_tolerance": 0.0}
+        self._places = {"position_error": 0.0}
 
     def _set(self, where, name, value):
         if where[name] != value:
@@ -410,6 +419,9 @@ class Drawing(VTKPythonAlgorithmBase):
     def SetColourTolerance(self, value):
         self._set(self._colours, "colour_tolerance", value)
 
+    def SetPositionError(self, value):
+        self._set(self._places, "position_error", value)
+
     def SetBand(self, low, high):
         self._set(self._band, "values", (low, high))
 
@@ -449,6 +461,8 @@ class Drawing(VTKPythonAlgorithmBase):
     def where(self):
         """What holds in a part of space, and how nodes move, as arguments of a field."""
         where = dict(self._blend)
+        if self._places["position_error"] > 0:
+            where.update(self._places)
         if self._lens["radius"] > 0:
             where["lens"] = (self._lens["centre"], self._lens["radius"])
         bounds = self._region["bounds"]
