@@ -7,6 +7,7 @@
 // something differs.
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <type_traits>
 
 #include <dune/common/parallel/mpihelper.hh>
@@ -16,6 +17,7 @@
 
 #include "drawn_on_ranks.hpp"
 #include "dune_ug_grids.hpp"
+#include "refusal_rows.hpp"
 
 using namespace nestgrid_test;
 
@@ -203,29 +205,67 @@ int compare_ug(Ranks& ranks) {
     return wrong;
 }
 
-/// Grids and values that are not drawn on ranks, or not without them.
+/// Grids and values that are not drawn on ranks, or not without them. What the first of two ranks
+/// says stands in docs/refusals.md.
+class DuneRefusals {
+public:
+    explicit DuneRefusals(Ranks& ranks) : refusals_(ranks) {
+        if (ranks.size() == 2 && ranks.rank() == 0) rows_.emplace("Dune on ranks");
+    }
+    /// \param sentence a part of what all ranks say
+    template <class Exception, class Ask>
+    void expect(const char* state, const char* sentence, const Ask& ask) {
+        if (rows_) {
+            rows_->add<Exception>(state, ask);
+        } else {
+            refusals_.expect<Exception>(sentence, ask);
+        }
+    }
+    Refusals& of_rank() { return refusals_; }
+    /// How many were wrong.
+    int end() {
+        rows_.reset();
+        return refusals_.wrong + (testing::UnitTest::GetInstance()->Failed() ? 1 : 0);
+    }
+
+private:
+    Refusals refusals_;
+    std::optional<RefusalRows> rows_;
+};
+
 int refuse(Ranks& ranks) {
     if (ranks.size() == 1) return 0;
-    Refusals refusals(ranks);
+    DuneRefusals refusals(ranks);
     const Dune::YaspGrid<2> bare({1, 1}, {20, 20}, std::bitset<2>(), 0);
-    refusals.expect<InvalidInput>("make it with an overlap of 1", [&] { const DuneGrid g(bare); });
+    refusals.expect<InvalidInput>("no overlap", "make it with an overlap of 1",
+                                  [&] { const DuneGrid g(bare); });
     const Dune::YaspGrid<2> periodic({1, 1}, {20, 20}, std::bitset<2>("01"), 1);
-    refusals.expect<InvalidInput>("the Dune grid is periodic", [&] { const DuneGrid g(periodic); });
+    refusals.expect<InvalidInput>("a periodic grid", "the Dune grid is periodic",
+                                  [&] { const DuneGrid g(periodic); });
     Structured<Even<2>> parts(MPI_COMM_WORLD, 1, true);
     const DuneGrid mine(*parts.solver);
     std::vector<double> values = sphere_at_vertices(*parts.solver, false);
     const DuneVertexField own(mine, values);
-    refusals.expect<GridError>("are on other processes", [&] { isosurface(mine, own, 0.0); });
+    refusals.expect<GridError>("a grid without its ranks", "are on other processes",
+                               [&] { isosurface(mine, own, 0.0); });
+    const Structured<Even<2>> whole(MPI_COMM_SELF, 1, true);
+    const DuneGrid alone(*whole.solver);
+    refuse_other_ranks(mine, alone, ranks, refusals.of_rank());
+    MpiRanks self(MPI_COMM_SELF);
+    refusals.expect<InvalidInput>("ranks of another communicator", "that of the ranks 1:", [&] {
+        const Distributed other(mine, self);
+    });
     const Distributed grid(mine, ranks);
     const DistributedField field(grid, own);
     for (double& value : values) value += ranks.rank();
-    refusals.expect<InvalidInput>("its field differs from that of rank",
+    refusals.expect<InvalidInput>("values that differ between processes",
+                                  "its field differs from that of rank",
                                   [&] { const DistributedField other(grid, own); });
     parts.solver->globalRefine(1);
     values = sphere_at_vertices(*parts.solver, false);
-    refusals.expect<GridError>("the grid has changed",
+    refusals.expect<GridError>("ranks from before a refinement", "the grid has changed",
                                [&] { const DistributedField stale(grid, own); });
-    return refusals.wrong;
+    return refusals.end();
 }
 
 }  // namespace
