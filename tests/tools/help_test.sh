@@ -82,7 +82,7 @@ refused 2 'a command is missing'
 refused 2 "has no option --qqqqqq \(" isosurface v.vti --qqqqqq
 refused 2 "takes V,V,..., not 'abc'" isosurface v.vti --value abc
 refused 2 'takes V,V,..., but nothing follows' isosurface v.vti --value
-refused 2 '--value is given twice' isosurface v.vti --value 1 --value 2
+refused 2 '--at is given twice' slice v.vti --axis z --at 1 --at 2
 refused 2 'takes X,Y,Z,NX,NY,NZ' slice v.vti --plane 1,2,3
 refused 2 "value is required: the values of 'v.vti' are from [0-9.]+ to [0-9.]+, try --value [0-9]+ \(" isosurface v.vti
 run isosurface v.vti --value "$("$program" isosurface v.vti 2>&1 | sed 's/.*--value \([0-9.]*\).*/\1/')"
