@@ -63,6 +63,20 @@ for file in thirds.htg uneven.htg; do
     run isosurface "$file" "later_$file" --field dist --value 0 --threshold 1e-3 --time 1 -o timed.vtp
     cmp -s alone.vtp timed.vtp || fail "$file: the surface at the time of a file is another one"
 done
+# A field of cells colours the surface of another one as a formula does, at any time.
+for file in trees.htg thirds.htg uneven.htg; do
+    for by in plac x; do
+        run isolines "$file" --field dist --on-surface 0 --by $by --values 0.4,0.6 --threshold 0 -o $by.vtp
+        value length >$by.lengths
+        run isolines "$file" "later_$file" --field dist --on-surface 0 --by $by --values 0.5 --time 0.5 -o $by.vtp
+        value length >>$by.lengths
+    done
+    [ "$(wc -l <plac.lengths)" -ge 2 ] || fail "$file: no lines by another field: $(cat plac.lengths)"
+    paste plac.lengths x.lengths | awk '{ if ($1 < 1 || $1 > 1.0001 * $2 || $1 < 0.9999 * $2) exit 1 }' ||
+        fail "$file: lines by another field: $(paste plac.lengths x.lengths)"
+    refused 1 "expression 'plack' is no expression" \
+        isolines "$file" --field dist --on-surface 0 --by plack --values 0.5 -o x.vtp
+done
 refused 1 "'uneven.htg' has another grid than the first input" \
     isosurface thirds.htg uneven.htg --field dist --value 0 --time 0.5
 for file in thirds.htg uneven.htg; do

@@ -24,9 +24,15 @@ public:
 
     FieldPair(const Field& first, const Field& second) : fields_{first, second} {}
 
-    nestgrid::NodeMask coarse_values(std::size_t i, std::span<value_type> out) const {
+    template <class Context>
+    nestgrid::NodeMask coarse_values(std::size_t i, std::span<value_type> out,
+                                     Context& context) const {
         return gather(out, [&](const Field& field, std::span<value_type> values) {
-            return field.coarse_values(i, values);
+            if constexpr (requires { field.coarse_values(i, values, context); }) {
+                return field.coarse_values(i, values, context);
+            } else {
+                return field.coarse_values(i, values);
+            }
         });
     }
     template <class Context>

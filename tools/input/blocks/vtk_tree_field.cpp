@@ -14,6 +14,7 @@
 
 #include "input/blocks/block_file.hpp"
 #include "input/blocks/vtk_tree_records.hpp"
+#include "input/field_pair.hpp"
 
 namespace {
 
@@ -113,6 +114,18 @@ void require_same_trees(const std::vector<std::shared_ptr<const Parcel>>& parcel
     }
 }
 
+/// \throw InvalidInput where a file lacks the field in --by that the first one has
+void require_other_field(const std::vector<std::shared_ptr<const Parcel>>& parcels,
+                         const Paths& paths, const std::string& by) {
+    const auto count = [&](std::size_t i) {
+        return parcels[i]->block<TreeFieldHead>(TreePart::fields).size();
+    };
+    for (std::size_t i = 1; i < parcels.size(); ++i) {
+        if (count(i) >= count(0)) continue;
+        throw InvalidInput("'" + paths[i].string() + "' has no field '" + by + "'");
+    }
+}
+
 /// How many nodes the leaves have.
 template <class Grid>
 std::size_t node_count(const Grid& grid) {
@@ -131,25 +144,39 @@ InputField frames_of(std::vector<std::shared_ptr<const Parcel>> parcels, const I
     using Grid = nestgrid::HyperTreeGrid<dim, factor>;
     using Field = nestgrid::CellAverages<Grid, NumberOfTree<Grid>>;
     const auto kept = std::make_shared<KeptTrees<Grid>>(std::move(parcels));
-    const auto values = [&](std::size_t i) {
-        return kept->parcels[i]->template block<double>(TreePart::values);
+    const std::size_t count =
+        kept->parcels.front()->template block<std::uint8_t>(TreePart::cells).size();
+    const auto heads = kept->parcels.front()->template block<TreeFieldHead>(TreePart::fields);
+    const auto values = [&](std::size_t i, std::size_t of_field) {
+        return kept->parcels[i]
+            ->template block<double>(TreePart::values)
+            .subspan(of_field * count, count);
     };
-    std::vector<double> sums(values(0).begin(), values(0).end());  // NaN where a frame has none
-    for (std::size_t f = 1; f < kept->parcels.size(); ++f) {
-        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values(f)[i];
+    std::vector<double> sums(count);  // NaN where a frame has none
+    for (std::size_t f = 0; f < kept->parcels.size(); ++f) {
+        for (std::size_t h = 0; h < heads.size(); ++h) {
+            for (std::size_t i = 0; i < count; ++i) sums[i] += values(f, h)[i];
+        }
     }
     kept->trees.mask(sums);
     kept->grid.emplace(*kept->trees.grid);
     const std::shared_ptr<const Grid> grid(kept, &*kept->grid);
     std::vector<Field> fields;
+    std::vector<FieldPair<Field>> pairs;
+    const auto add = [&](std::size_t f, std::size_t of_field) {
+        return Field(*grid, {grid.get(), values(f, of_field)}, rule_of(input.cells));
+    };
     for (std::size_t f = 0; f < kept->parcels.size(); ++f) {
-        fields.emplace_back(*grid, NumberOfTree<Grid>{grid.get(), values(f)}, rule_of(input.cells));
+        fields.push_back(add(f, 0));
+        if (heads.size() > 1) pairs.emplace_back(fields.back(), add(f, 1));
     }
+    const auto all_times = times_of_frames(times, times_of_files(kept->parcels.size()));
     InputField field;
-    field.frames =
-        nestgrid::shared_frames(grid, std::move(fields),
-                                times_of_frames(times, times_of_files(kept->parcels.size())), kept);
-    const auto name = kept->parcels.front()->template block<char>(TreePart::names);
+    field.frames = heads.size() > 1
+                       ? nestgrid::shared_frames(grid, std::move(pairs), all_times, kept)
+                       : nestgrid::shared_frames(grid, std::move(fields), all_times, kept);
+    const auto name =
+        kept->parcels.front()->template block<char>(TreePart::names).first(heads.front().letters);
     field.name = {name.begin(), name.end()};
     field.nodes = node_count(*grid);
     const auto cells = kept->parcels.front()->template block<std::uint8_t>(TreePart::cells);
@@ -174,6 +201,7 @@ InputField tree_field(const Input& input, const Paths& paths, const std::vector<
         parcels.push_back(trees_apart(path, &input, seconds));
     }
     require_same_trees(parcels, paths);
+    require_other_field(parcels, paths, input.by);
     const TreeHead head = parcels.front()->block<TreeHead>(TreePart::head).front();
     if (head.dimension == 2) {
         return head.factor == 2 ? frames_of<2, 2>(std::move(parcels), input, times)

@@ -110,6 +110,13 @@ void put_trees(const fs::path& path, const Input* input, Parcel& out) {
         values = numbers_of(records, data_of(field), component_of(field, *input));
         heads.push_back({field.components, field.name.size(), {}});
         names = field.name;
+        const auto other = std::ranges::find(fields, input->by, &BlockFile::Field::name);
+        if (other != fields.end()) {
+            const std::vector<double> more = numbers_of(records, data_of(*other), 0);
+            values.insert(values.end(), more.begin(), more.end());
+            heads.push_back({other->components, other->name.size(), {}});
+            names += other->name;
+        }
     } else {
         for (const BlockFile::Field& field : fields) {
             const auto range = range_in_leaves(records, numbers_of(records, data_of(field), 0));
