@@ -25,11 +25,15 @@ public:
     };
 
     PolynomialPoints(const HighOrder& data, std::span<const Point> points, Beside beside)
-        : data_{data.data_.get()}, found_(points.size()) {
+        : data_{data.data_.get()},
+          leaves_(data,
+                  {.tolerance = std::numeric_limits<double>::max(), .position_tolerance = near()}),
+          found_(points.size()) {
         std::vector<std::size_t> all(points.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
-        probed = look(data, points, all, points, Beside::nearest);
-        if (data_->places) look_beside(data, points, beside);
+        probed = engine::probe<double>(leaves_, points);
+        take(probed, all, points, Beside::nearest);
+        if (data_->places) look_beside(points, beside);
     }
 
     /// The values of all components at a point that was found, and its place in the leaf.
@@ -79,7 +83,7 @@ private:
 
     /// Looks for what is not inside a leaf that was found: on curved boundaries, and beside faces
     /// that are drawn straight.
-    void look_beside(const HighOrder& data, std::span<const Point> points, Beside beside) {
+    void look_beside(std::span<const Point> points, Beside beside) {
         for (double by = 2 * near(); by < data_->places->records.extent(); by *= 8) {
             for (std::size_t side = 0; side < 6; ++side) {
                 std::vector<std::size_t> rest;
@@ -92,23 +96,18 @@ private:
                     around.back()[side / 2] += side % 2 == 0 ? by : -by;
                 }
                 if (rest.empty()) return;
-                look(data, around, rest, points, beside);
+                take(engine::probe<double>(leaves_, around), rest, points, beside);
             }
             if (beside == Beside::inside) return;
         }
     }
-    /// Finds places for some of all points, in the leaves around points that are near them.
-    /// \param number of each
-    ProbeResult look(const HighOrder& data, std::span<const Point> around,
-                     std::span<const std::size_t> number, std::span<const Point> points,
-                     Beside accepted) {
-        // At a tolerance that all leaves are within, elements are those of the hierarchy, and where
-        // leaves are curved parts of them.
-        const VirtualRefinement leaves(
-            data, {.tolerance = std::numeric_limits<double>::max(), .position_tolerance = near()});
-        ProbeResult result = engine::probe<double>(leaves, around);
+    /// Takes the leaves around some points for those that they stand for, where these lie deeper in
+    /// them than in what was found before.
+    /// \param number of the point that each stands for, among `points`
+    void take(const ProbeResult& result, std::span<const std::size_t> number,
+              std::span<const Point> points, Beside accepted) {
         const auto elements = result.elements.as<VirtualElement>();
-        for (std::size_t i = 0; i < around.size(); ++i) {
+        for (std::size_t i = 0; i < number.size(); ++i) {
             if (!result.found(i)) continue;
             const VirtualElement& e = elements[result.element_of[i]];
             const LeafPolynomial& leaf = data_->field.records.leaves()[e.leaf];
@@ -121,10 +120,8 @@ private:
             if (accepted == Beside::inside && !found.inside()) continue;
             if (found.depth <= found_[n].depth) continue;
             found_[n] = found;
-            if (!data_->places || probed.level.empty()) continue;
             probed.level[n] = result.level[i];
         }
-        return result;
     }
     /// A point of an element below a leaf, in the reference element of the leaf.
     static Point in_leaf(const ShapeParts& leaf, const VirtualElement& e, const Point& reference) {
@@ -199,6 +196,9 @@ private:
     }
 
     const HighOrderData* data_;
+    /// At a tolerance that all leaves are within, so that elements are those of the hierarchy, and
+    /// where leaves are curved parts of them.
+    VirtualRefinement leaves_;
     std::vector<Found> found_;
 };
 

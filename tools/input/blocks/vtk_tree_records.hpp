@@ -46,9 +46,8 @@ TreeHead head_of(vtkHyperTreeGrid& grid);
 TreeHead tree_head(const std::filesystem::path& path, double seconds);
 
 /// The trees of a file and the values of a field, or the ranges of all.
-/// \param input that chooses the field, and another one behind it where the file has one of the
-/// name
-///        in --by; null for all
+/// \param input that chooses the field, and a second one behind it where --by names one of the
+///        file; null for the ranges of all
 /// \throw nestgrid::IoError, nestgrid::InvalidInput as run_apart()
 std::shared_ptr<const Parcel> trees_apart(const std::filesystem::path& path, const Input* input,
                                           double seconds);

@@ -111,7 +111,7 @@ struct DuneDefaults {
         out.clear();
         for (const Element& child : descendantElements(e, e.level() + 1)) out.push_back(child);
     }
-    /// Where a corner lies: the same to the last bit in all elements and processes that have it.
+    /// The position of a corner: the same bits in every element and on every process that has it.
     static Point corner(const DuneType&, const Element& e, int corner) {
         return detail::dune_point(e.geometry().corner(corner));
     }

@@ -120,7 +120,7 @@ private:
         }
     }
 
-    /// That a thread talks to other ranks, while it lives.
+    /// Held by the one thread that may talk to other ranks; refuses a second one.
     class Turn {
     public:
         explicit Turn(MpiRanks& ranks) : taken_{&ranks.taken_} {

@@ -12,7 +12,7 @@
 
 namespace nestgrid::detail {
 
-/// What a grid may say beside `presence`.
+/// What a distributed grid may tell beside `presence` (optional.hpp).
 struct GridOnRanks {
     int rank_count = 0;  ///< of processes over which it is distributed; 0: it does not say
     /// Of coarse elements; nothing where these are the same on all ranks.
