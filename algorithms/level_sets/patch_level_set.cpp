@@ -11,13 +11,13 @@ namespace {
 
 /// Answers the questions of a walk in patches and draws its batches.
 template <int dimension, class Real>
-class PatchLevelSet final : public detail::ErasedBisectionVisitor<dimension, Real> {
-    using Base = detail::ErasedBisectionVisitor<dimension, Real>;
+class PatchLevelSet final : public ErasedBisectionVisitor<dimension, Real> {
+    using Base = ErasedBisectionVisitor<dimension, Real>;
 
 public:
-    PatchLevelSet(const LevelSearch<Real>& search, const PatchTarget<dimension, Real>& target,
-                  PatchCounts& counts)
-        : search_{&search}, target_{&target}, counts_{&counts} {}
+    PatchLevelSet(const typename Base::Start& start, const LevelSearch<Real>& search,
+                  const PatchTarget<dimension, Real>& target, PatchCounts& counts)
+        : Base(start), search_{&search}, target_{&target}, counts_{&counts} {}
 
     typename Base::Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level,
                                  bool outside) override {
@@ -60,21 +60,19 @@ template <int dimension, class Real>
 void draw_in_patches(const Walk<Real>& walk, const ElementView<Real>& view,
                      const LevelSearch<Real>& search, const PatchTarget<dimension, Real>& target,
                      PatchCounts& counts) {
-    PatchLevelSet<dimension, Real> visitor(search, target, counts);
-    detail::ErasedBisectionVisitor<dimension, Real>& seam = visitor;
-    Task* const task = view.stack->task.get();
-    if (walk.function_count() == 0) {
-        return bisect(walk.hierarchy(), task, view.element(), view.value, view.level,
-                      view.orientation, seam);
-    }
-    if constexpr (dimension == 3 && std::is_same_v<Real, double>) {
-        std::array<double, 4> values{};
+    std::array<Real, 4> values{};
+    double tolerance = -1;
+    if (walk.function_count() > 0) {
         for (std::size_t k = 0; k < values.size(); ++k) {
             values[k] = view.value[k * walk.components()];
         }
-        bisect_means(walk.hierarchy(), task, view.element(), values.data(),
-                     walk.functions()->tolerance(0), view.level, view.orientation, seam);
+        tolerance = walk.functions()->tolerance(0);
     }
+    PatchLevelSet<dimension, Real> visitor(
+        {tolerance < 0 ? view.value : values.data(), view.level, view.orientation, tolerance},
+        search, target, counts);
+    ErasedBisectionVisitor<dimension, Real>& seam = visitor;
+    bisect(walk.hierarchy(), view.stack->task.get(), view.element(), seam);
 }
 
 template void draw_in_patches(const Walk<float>&, const ElementView<float>&,

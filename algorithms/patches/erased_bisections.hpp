@@ -75,18 +75,24 @@ protected:
     ~ErasedPatches() = default;
 };
 
-}  // namespace nestgrid::engine
-
-namespace nestgrid::detail {
-
-/// What BisectionWalk and PatchWalk ask of a visitor, as virtual functions.
+/// What BisectionWalk and PatchWalk ask of a visitor, as virtual functions, and where the walk
+/// begins.
 template <int dim, class Real>
-class ErasedBisectionVisitor {
+class ErasedBisectionVisitor : public detail::PatchVisitor {
 public:
+    struct Start {
+        const Real* values;  ///< at the corners of the element, borrowed
+        int level;
+        int orientation;
+        /// Where values at new nodes are means, those within it of 0 are 0; else negative.
+        double tolerance = -1;
+    };
     struct Glance {
-        engine::Visit visit;
+        Visit visit;
         Real bound;
     };
+
+    const Start& start() const { return start_; }
 
     virtual Glance glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level,
                           bool outside) = 0;
@@ -95,22 +101,22 @@ public:
     /// Takes the counts of the whole walk, at its end.
     virtual void end(std::uint64_t looked_at, std::uint64_t visited) = 0;
     // The parts of maubach_patch<dim>: inner ones, and ends.
-    virtual engine::PackedSight<Real> see_within(const engine::PackedPatches<Real>& patches) = 0;
-    virtual engine::PackedSight<Real> see_ends(const engine::PackedPatches<Real>& patches) = 0;
+    virtual PackedSight<Real> see_within(const PackedPatches<Real>& patches) = 0;
+    virtual PackedSight<Real> see_ends(const PackedPatches<Real>& patches) = 0;
     virtual void prefetch(const NodeKey* nodes, std::size_t rows) const = 0;
     virtual bool names_edges() const = 0;
     virtual void begin_subtrees(std::uint32_t numbers) = 0;
-    virtual unsigned extract(const engine::ErasedPatches<dim, Real>& patches,
-                             const engine::BatchSelection& selection) = 0;
+    virtual unsigned extract(const ErasedPatches<dim, Real>& patches,
+                             const BatchSelection& selection) = 0;
 
 protected:
-    ErasedBisectionVisitor() = default;
+    explicit ErasedBisectionVisitor(const Start& start)
+        : detail::PatchVisitor(start.tolerance >= 0), start_{start} {}
     ~ErasedBisectionVisitor() = default;
+
+private:
+    Start start_;
 };
-
-}  // namespace nestgrid::detail
-
-namespace nestgrid::engine {
 
 /// A visitor for BisectionWalk that forwards all calls to an ErasedBisectionVisitor.
 template <HasMaubachPatches Grid, class Field>
@@ -119,7 +125,7 @@ class BisectionForwarder {
     using Real = typename Field::value_type;
 
 public:
-    BisectionForwarder(const Field& field, detail::ErasedBisectionVisitor<dim, Real>& to)
+    BisectionForwarder(const Field& field, ErasedBisectionVisitor<dim, Real>& to)
         : field_{&field}, to_{&to} {}
 
     auto glance(Real lo, Real hi, const Rule& rule, NodeKey node, int level, bool outside) {
@@ -185,17 +191,35 @@ private:
     };
 
     const Field* field_;
-    detail::ErasedBisectionVisitor<dim, Real>* to_;
+    ErasedBisectionVisitor<dim, Real>* to_;
 };
 
 /// Walks the bisections below an element, and tells the visitor the counts of the walk at its end.
 template <class Grid, class Field, class Real>
-void walk_for(detail::ErasedBisectionVisitor<Grid::dimension, Real>& visitor, const Grid& grid,
-              const Field& field, const ElementOf<Grid>& e, const Real* values, int level,
-              int orientation) {
+void walk_for(ErasedBisectionVisitor<Grid::dimension, Real>& visitor, const Grid& grid,
+              const Field& field, const ElementOf<Grid>& e) {
     BisectionForwarder<Grid, Field> forward(field, visitor);
-    walk_bisections(grid, field, forward, e, values, level, orientation,
+    const auto& start = visitor.start();
+    walk_bisections(grid, field, forward, e, start.values, start.level, start.orientation,
                     [&](const auto& walk) { visitor.end(walk.looked_at(), walk.visited()); });
+}
+
+/// Hierarchy::bisect() of a grid and a field with known bisections: with the values of the field
+/// or, for a visitor that takes means, with those of a function of position.
+template <class Grid, class Field>
+void bisect_for(detail::PatchVisitor& visitor, const Grid& grid, const Field& field,
+                const ElementOf<Grid>& e) {
+    using Real = typename Field::value_type;
+    // Rows of floats are widened before (position_functions.hpp).
+    constexpr bool as_doubles = !AnswersInRows<Grid> || std::is_same_v<Real, double>;
+    if constexpr (Grid::dimension == 3 && as_doubles) {
+        if (visitor.takes_means()) {
+            auto& to = static_cast<ErasedBisectionVisitor<3, double>&>(visitor);
+            const CarriedField<Grid, Field> carried(field);
+            return walk_for(to, grid, MeanValues<Grid>(to.start().tolerance, carried), e);
+        }
+    }
+    walk_for(static_cast<ErasedBisectionVisitor<Grid::dimension, Real>&>(visitor), grid, field, e);
 }
 
 }  // namespace nestgrid::engine

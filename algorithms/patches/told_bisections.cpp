@@ -23,37 +23,18 @@ const nestgrid_element& told_element(const Handle& element) {
 }  // namespace
 
 template <int dim, class Real>
-void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element, const Real* values,
-            int level, int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor) {
-    if (hierarchy.bisection_rows() == nullptr) {
-        return hierarchy.bisect(task, element, values, level, orientation, visitor);
-    }
-    using Grid = ToldBisections<dim, Real>;
-    const Grid grid(hierarchy, task);
-    const auto& e = told_element<dim>(element);
-    const ToldValues<Real> field(*hierarchy.bisection_rows(), hierarchy.facts().gradients_at_nodes);
-    walk_for(visitor, grid, field, e, values, level, orientation);
-}
-
-void bisect_means(const Hierarchy<double>& hierarchy, Task* task, const Handle& element,
-                  const double* values, double tolerance, int level, int orientation,
-                  detail::ErasedBisectionVisitor<3, double>& visitor) {
+void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element,
+            ErasedBisectionVisitor<dim, Real>& visitor) {
     const auto* const rows = hierarchy.bisection_rows();
-    if (rows == nullptr) {
-        return hierarchy.bisect_means(task, element, values, tolerance, level, orientation,
-                                      visitor);
-    }
-    using Grid = ToldBisections<3, double>;
-    const Grid grid(hierarchy, task);
-    const ToldValues<double> told(*rows, false);
-    const CarriedField<Grid, ToldValues<double>> carried(told);
-    const MeanValues<Grid> field(tolerance, carried);
-    walk_for(visitor, grid, field, told_element<3>(element), values, level, orientation);
+    if (rows == nullptr) return hierarchy.bisect(element, visitor);
+    const ToldBisections<dim, Real> grid(hierarchy, task);
+    const ToldValues<Real> field(*rows, hierarchy.facts().gradients_at_nodes);
+    bisect_for(visitor, grid, field, told_element<dim>(element));
 }
 
-#define NESTGRID_INSTANTIATE(dim, Real)                                                       \
-    template void bisect(const Hierarchy<Real>&, Task*, const Handle&, const Real*, int, int, \
-                         detail::ErasedBisectionVisitor<dim, Real>&);
+#define NESTGRID_INSTANTIATE(dim, Real)                                \
+    template void bisect(const Hierarchy<Real>&, Task*, const Handle&, \
+                         ErasedBisectionVisitor<dim, Real>&);
 NESTGRID_INSTANTIATE(2, float)
 NESTGRID_INSTANTIATE(2, double)
 NESTGRID_INSTANTIATE(3, float)

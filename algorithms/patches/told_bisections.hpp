@@ -146,15 +146,11 @@ private:
 };
 
 /// Walks the bisections below an element in patches: by the rows that the hierarchy tells or, where
-/// it tells none, by its own bisect(). Requires facts().knows_patches.
+/// it tells none, by its own bisect(). Requires facts().knows_patches or, for a visitor that takes
+/// means, facts().bisects_means.
 /// \throw GridError where the element has a tag that does not exist
 template <int dim, class Real>
-void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element, const Real* values,
-            int level, int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
-/// Walks the patches with values of an affine function, interpolated at new nodes
-/// (Hierarchy::bisect_means). Requires facts().bisects_means.
-void bisect_means(const Hierarchy<double>& hierarchy, Task* task, const Handle& element,
-                  const double* values, double tolerance, int level, int orientation,
-                  detail::ErasedBisectionVisitor<3, double>& visitor);
+void bisect(const Hierarchy<Real>& hierarchy, Task* task, const Handle& element,
+            ErasedBisectionVisitor<dim, Real>& visitor);
 
 }  // namespace nestgrid::engine

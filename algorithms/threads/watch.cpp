@@ -57,18 +57,8 @@ public:
     const detail::BisectionRows<Real>* bisection_rows() const override {
         return checked().bisection_rows();
     }
-    void bisect(Task* task, const Handle& element, const Real* values, int level, int orientation,
-                detail::ErasedBisectionVisitor<2, Real>& visitor) const override {
-        checked().bisect(task, element, values, level, orientation, visitor);
-    }
-    void bisect(Task* task, const Handle& element, const Real* values, int level, int orientation,
-                detail::ErasedBisectionVisitor<3, Real>& visitor) const override {
-        checked().bisect(task, element, values, level, orientation, visitor);
-    }
-    void bisect_means(Task* task, const Handle& element, const double* values, double tolerance,
-                      int level, int orientation,
-                      detail::ErasedBisectionVisitor<3, double>& visitor) const override {
-        checked().bisect_means(task, element, values, tolerance, level, orientation, visitor);
+    void bisect(const Handle& element, detail::PatchVisitor& visitor) const override {
+        checked().bisect(element, visitor);
     }
 
 private:

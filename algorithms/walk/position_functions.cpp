@@ -139,14 +139,6 @@ void WidenedHierarchy<Real>::Rows::values(std::span<const Node> nodes,
 }
 
 template <class Real>
-void WidenedHierarchy<Real>::bisect_means(
-    Task* task, const Handle& element, const double* values, double tolerance, int level,
-    int orientation, detail::ErasedBisectionVisitor<3, double>& visitor) const {
-    inner_->bisect_means(own(task).inner.get(), element, values, tolerance, level, orientation,
-                         visitor);
-}
-
-template <class Real>
 auto WidenedHierarchy<Real>::own(Task* task) -> WidenedTask& {
     return static_cast<WidenedTask&>(*task);
 }

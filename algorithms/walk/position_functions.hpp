@@ -114,9 +114,9 @@ public:
     const detail::BisectionRows<double>* bisection_rows() const override {
         return rows_ ? &*rows_ : nullptr;
     }
-    void bisect_means(Task* task, const Handle& element, const double* values, double tolerance,
-                      int level, int orientation,
-                      detail::ErasedBisectionVisitor<3, double>& visitor) const override;
+    void bisect(const Handle& element, detail::PatchVisitor& visitor) const override {
+        inner_->bisect(element, visitor);
+    }
 
 private:
     struct WidenedTask;

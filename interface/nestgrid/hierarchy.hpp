@@ -125,7 +125,7 @@ struct HierarchyFacts {
     bool knows_stars = false;           ///< star_rows() and row_values() work
     bool knows_star_positions = false;  ///< star_rows() and node_position() work
     bool knows_patches = false;         ///< bisection_rows() or bisect() work
-    bool bisects_means = false;         ///< bisection_rows() or bisect_means() work
+    bool bisects_means = false;         ///< the same for visitors that take means
     bool gradients_at_nodes = false;    ///< rows, or bisect(), hand over gradients at any node
     bool fills_rows = false;            ///< every node is in a star row
     bool decodes = false;               ///< values at new nodes need those at the corners
@@ -152,8 +152,20 @@ namespace detail {
 /// \throw GridError that names the rule, which has more children than the grid promises
 [[noreturn]] void throw_too_many_children(const Rule& rule, std::size_t most);
 
-template <int dim, class Real>
-class ErasedBisectionVisitor;
+/// For whom Hierarchy::bisect() walks. The library derives its visitors from it.
+class PatchVisitor {
+public:
+    /// Whether the walk has values of a function of position in the place of the field's: at a new
+    /// node the mean of those at its parents.
+    bool takes_means() const { return takes_means_; }
+
+protected:
+    explicit PatchVisitor(bool takes_means) : takes_means_{takes_means} {}
+    ~PatchVisitor() = default;
+
+private:
+    bool takes_means_;
+};
 
 /// Bisections told in rows of nodes, as nestgrid.h describes them at `middles`. Elements of the
 /// hierarchy are nestgrid_element.
@@ -259,18 +271,9 @@ public:
 
     /// The bisections of a grid that tells them in rows; else null.
     virtual const detail::BisectionRows<Real>* bisection_rows() const { return nullptr; }
-    /// Walks the bisections below an element in patches, where facts().knows_patches and there are
-    /// no rows.
-    virtual void bisect(Task* task, const Handle& element, const Real* values, int level,
-                        int orientation, detail::ErasedBisectionVisitor<2, Real>& visitor) const;
-    virtual void bisect(Task* task, const Handle& element, const Real* values, int level,
-                        int orientation, detail::ErasedBisectionVisitor<3, Real>& visitor) const;
-    /// bisect() of a function of position in the place of the field, where facts().bisects_means.
-    /// \param values of the function at the corners. At a new node it is the mean of its values at
-    ///        the parents, or 0 where the mean is within `tolerance` of 0
-    virtual void bisect_means(Task* task, const Handle& element, const double* values,
-                              double tolerance, int level, int orientation,
-                              detail::ErasedBisectionVisitor<3, double>& visitor) const;
+    /// Walks the bisections below an element in patches, where there are no rows, and
+    /// facts().knows_patches or, for visitors that take means, facts().bisects_means.
+    virtual void bisect(const Handle& element, detail::PatchVisitor& visitor) const;
 
 protected:
     explicit Hierarchy(const HierarchyFacts& facts) : facts_{facts} {}
@@ -303,13 +306,6 @@ Point Hierarchy<Real>::node_position(NodeKey) const {
     return {};
 }
 template <class Real>
-void Hierarchy<Real>::bisect(Task*, const Handle&, const Real*, int, int,
-                             detail::ErasedBisectionVisitor<2, Real>&) const {}
-template <class Real>
-void Hierarchy<Real>::bisect(Task*, const Handle&, const Real*, int, int,
-                             detail::ErasedBisectionVisitor<3, Real>&) const {}
-template <class Real>
-void Hierarchy<Real>::bisect_means(Task*, const Handle&, const double*, double, int, int,
-                                   detail::ErasedBisectionVisitor<3, double>&) const {}
+void Hierarchy<Real>::bisect(const Handle&, detail::PatchVisitor&) const {}
 
 }  // namespace nestgrid

@@ -35,24 +35,9 @@ bool knows_patches(const Grid&, const Field&, const HierarchyFacts&) { return tr
 template <class Grid, class Field>
     requires(engine::KnowsBisections<Grid, Field>&& engine::HasMaubachPatches<Grid>&&
                  detail::components_of<Field>() == 1)
-void bisect_patches(
-    const Grid& grid, const Field& field, Context<Grid>&, const ElementOf<Grid>& e,
-    const typename Field::value_type* values, int level, int orientation,
-    detail::ErasedBisectionVisitor<Grid::dimension, typename Field::value_type>& visitor) {
-    engine::walk_for(visitor, grid, field, e, values, level, orientation);
-}
-
-/// Walks them for a function of position (Hierarchy::bisect_means).
-template <class Grid, class Field>
-    requires(engine::KnowsBisections<Grid, Field>&& engine::HasMaubachPatches<Grid>&&
-                     detail::components_of<Field>() == 1 &&
-             Grid::dimension == 3)
-void bisect_patches_of_means(const Grid& grid, const Field& field, const ElementOf<Grid>& e,
-                             const double* values, double tolerance, int level, int orientation,
-                             detail::ErasedBisectionVisitor<3, double>& visitor) {
-    const engine::CarriedField<Grid, Field> carried(field);
-    engine::walk_for(visitor, grid, engine::MeanValues<Grid>(tolerance, carried), e, values, level,
-                     orientation);
+void bisect_patches(const Grid& grid, const Field& field, const ElementOf<Grid>& e,
+                    detail::PatchVisitor& visitor) {
+    engine::bisect_for(visitor, grid, field, e);
 }
 
 }  // namespace nestgrid

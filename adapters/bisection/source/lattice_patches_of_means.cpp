@@ -4,11 +4,9 @@
 
 namespace nestgrid {
 
-void walk_means(const LatticeBisection<3>& grid,
-                const engine::MeanValues<LatticeBisection<3>>& field,
-                const LatticeBisection<3>::Element& e, const double* values, int level,
-                int orientation, detail::ErasedBisectionVisitor<3, double>& visitor) {
-    engine::walk_for(visitor, grid, field, e, values, level, orientation);
-}
+template void engine::walk_for(engine::ErasedBisectionVisitor<3, double>&,
+                               const LatticeBisection<3>&,
+                               const engine::MeanValues<LatticeBisection<3>>&,
+                               const LatticeBisection<3>::Element&);
 
 }  // namespace nestgrid

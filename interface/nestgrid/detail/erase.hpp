@@ -289,23 +289,9 @@ public:
         return {};
     }
 
-    void bisect(
-        Task* task, const Handle& element, const Real* values, int level, int orientation,
-        ErasedBisectionVisitor<Grid::dimension == 3 ? 3 : 2, Real>& visitor) const override {
+    void bisect(const Handle& element, PatchVisitor& visitor) const override {
         if constexpr (may_know_patches_) {
-            with(task, [&](auto& context) {
-                bisect_patches(*grid_, *field_, context, element_of<Element>(element), values,
-                               level, orientation, visitor);
-            });
-        }
-    }
-    using Hierarchy<Real>::bisect;
-    void bisect_means(Task* /*task*/, const Handle& element, const double* values, double tolerance,
-                      int level, int orientation,
-                      ErasedBisectionVisitor<3, double>& visitor) const override {
-        if constexpr (bisects_means_) {
-            bisect_patches_of_means(*grid_, *field_, element_of<Element>(element), values,
-                                    tolerance, level, orientation, visitor);
+            bisect_patches(*grid_, *field_, element_of<Element>(element), visitor);
         }
     }
 
@@ -322,17 +308,10 @@ private:
         offers_degree<Field, Context<Grid>, const Element&> &&
         offers_evaluate<Field, Context<Grid>, const Element&, std::span<const Point>,
                         std::span<Real>>;
-    static constexpr bool may_know_patches_ = requires(
-        const Grid& grid, const Field& field, Context<Grid>& context, const Element& e,
-        const Real* values, ErasedBisectionVisitor<Grid::dimension == 3 ? 3 : 2, Real>& visitor) {
+    static constexpr bool may_know_patches_ =
+        requires(const Grid& grid, const Field& field, const Element& e, PatchVisitor& visitor) {
         { knows_patches(grid, field, HierarchyFacts{}) } -> std::same_as<bool>;
-        bisect_patches(grid, field, context, e, values, 0, 1, visitor);
-    };
-
-    static constexpr bool bisects_means_ =
-        requires(const Grid& grid, const Field& field, const Element& e, const double* values,
-                 ErasedBisectionVisitor<3, double>& visitor) {
-        bisect_patches_of_means(grid, field, e, values, 0.0, 0, 1, visitor);
+        bisect_patches(grid, field, e, visitor);
     };
 
     struct OpenTask final : Task {
@@ -373,7 +352,7 @@ private:
         if constexpr (GivesGradientsAtNodes<Field, Grid>) {
             facts.gradients_at_nodes = facts.knows_patches;
         }
-        facts.bisects_means = bisects_means_;
+        facts.bisects_means = facts.knows_patches && facts.dimension == 3;
         if constexpr (requires { field.far_values(); }) facts.far_values = field.far_values();
         if (facts.offers(Feature::presence)) facts.drop_promises_of_whole_grids();
         return facts;

@@ -66,18 +66,8 @@ public:
     }
     Point node_position(NodeKey node) const override { return inner_->node_position(node); }
     const BisectionRows<Real>* bisection_rows() const override { return inner_->bisection_rows(); }
-    void bisect(Task* task, const Handle& element, const Real* values, int level, int orientation,
-                ErasedBisectionVisitor<2, Real>& visitor) const override {
-        inner_->bisect(task, element, values, level, orientation, visitor);
-    }
-    void bisect(Task* task, const Handle& element, const Real* values, int level, int orientation,
-                ErasedBisectionVisitor<3, Real>& visitor) const override {
-        inner_->bisect(task, element, values, level, orientation, visitor);
-    }
-    void bisect_means(Task* task, const Handle& element, const double* values, double tolerance,
-                      int level, int orientation,
-                      ErasedBisectionVisitor<3, double>& visitor) const override {
-        inner_->bisect_means(task, element, values, tolerance, level, orientation, visitor);
+    void bisect(const Handle& element, PatchVisitor& visitor) const override {
+        inner_->bisect(element, visitor);
     }
 
 protected:

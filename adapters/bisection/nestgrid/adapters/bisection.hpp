@@ -199,18 +199,11 @@ bool knows_patches(const LatticeBisection<dim>&, const LatticeField<LatticeBisec
 }
 
 /// Hierarchy::bisect() of a lattice; compiled for the types above.
-template <int dim, WalkedInPatches Sample, class Real>
+template <int dim, WalkedInPatches Sample>
 void bisect_patches(const LatticeBisection<dim>& grid,
-                    const LatticeField<LatticeBisection<dim>, Sample>& field, NoContext& context,
-                    const typename LatticeBisection<dim>::Element& e, const Real* values, int level,
-                    int orientation, detail::ErasedBisectionVisitor<dim, Real>& visitor);
-/// Hierarchy::bisect_means() of a lattice; compiled for the types above.
-template <WalkedInPatches Sample>
-void bisect_patches_of_means(const LatticeBisection<3>& grid,
-                             const LatticeField<LatticeBisection<3>, Sample>& field,
-                             const LatticeBisection<3>::Element& e, const double* values,
-                             double tolerance, int level, int orientation,
-                             detail::ErasedBisectionVisitor<3, double>& visitor);
+                    const LatticeField<LatticeBisection<dim>, Sample>& field,
+                    const typename LatticeBisection<dim>::Element& e,
+                    detail::PatchVisitor& visitor);
 
 template <int dim>
 LatticeBisection<dim>::LatticeBisection(const LatticeGeometry<dim>& geometry)
