@@ -33,7 +33,7 @@ TABLE = {
     "What is drawn": {
         "an isosurface": "isosurface nestgrid_isosurface_with isosurface isovalue isosurface IsosurfaceSource "
         "NestgridIsosurface",
-        "several in one walk": "isosurfaces a --value a isosurfaces a MoreIsovalues",
+        "several in one walk": "isosurfaces a --value a isosurfaces SetMoreIsovalues MoreIsovalues",
         "a series of them": "IsosurfaceSeries a a a a a a",
         "a band between two": "isoband nestgrid_isoband band a isoband IsobandSource NestgridBand",
         "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",
@@ -47,7 +47,7 @@ TABLE = {
         "NestgridBoundary",
         "data that jump": "DiscontinuousData a c c c a c",
         "values at points": "probe nestgrid_probe probe a probe b b",
-        "edges of elements": "outlines elements --outlines outlines outlines a Outlines",
+        "edges of elements": "outlines elements --outlines outlines outlines SetOutlines Outlines",
         "cracks, area, volume": "surface_report f i a report b b",
         "measured errors": "measure_error nestgrid_measure --measure a measure a a",
     },
@@ -69,18 +69,18 @@ TABLE = {
         "a lens": "Lens lens --lens lens lens SetLens LensRadius",
         "a region": "Region region --box a region SetProjection RegionBounds",
         "a criterion of one's own": "Criterion g g g g g g",
-        "times between frames": "Frames a --time time Frames a TimestepValues",
+        "times between frames": "Frames a --time time Frames SetFrames TimestepValues",
     },
     "How, and what is kept": {
         "normals": "normals normals --no-normals normals normals SetNormals Normals",
         "caps": "cap cap --cap a cap SetCap Cap",
         "vertices at nodes": "at_nodes at_nodes --at-nodes a at_nodes SetAtNodes AtNodes",
         "cuts on finest data": "Cuts finest_cuts --cuts a cuts SetFinestCuts Cuts",
-        "the element of a triangle": "elements elements --elements outlines elements a a",
+        "the element of a triangle": "elements elements --elements outlines elements SetElements a",
         "places in elements": "reference reference a a a a a",
         "colours that follow the data": "refine_colours colour_tolerance --colour-tolerance a colour_tolerance SetProjection ColourTolerance",
         "threads": "Executor threads --threads e threads SetExecutor e",
-        "work that is ended": "Watch progress h h h a a",
+        "work that is ended": "Watch progress h h h SetAbortExecute a",
     },
 }
 # Names that a front end has beside those of the table: data, places, and the like.

@@ -6,6 +6,7 @@
 
 #include <nestgrid/adapters/vtk_grid_source.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/outlines.hpp>
 
 namespace nestgrid {
 
@@ -21,6 +22,16 @@ public:
 
     void SetIsovalue(double isovalue) { set(isovalue_, isovalue); }
     double GetIsovalue() const { return isovalue_; }
+    /// Isovalues of further surfaces, which one walk draws with the first. Cells tell which one
+    /// they belong to ("value").
+    void SetMoreIsovalues(const std::vector<double>& isovalues) { set(more_, isovalues); }
+    const std::vector<double>& GetMoreIsovalues() const { return more_; }
+    /// The edges of the drawn elements on the surface, as lines, in the place of its triangles.
+    void SetOutlines(bool on) { set(outlines_, on); }
+    bool GetOutlines() const { return outlines_; }
+    /// Whether cells tell the number of their element ("element") and its level ("level").
+    void SetElements(bool on) { set(options_.elements, on); }
+    bool GetElements() const { return options_.elements; }
     /// A distance that the surface and that of all data keep there and back, in units of length.
     void SetDistance(double distance) {
         Projection kept = GetProjection();
@@ -57,13 +68,69 @@ protected:
 private:
     template <int dimension>
     vtkSmartPointer<vtkPolyData> draw_in(Prerolls& prerolls, const Work& work) {
-        const auto drawn = isosurface<dimension>(prerolls, isovalue_, projection(), options_, work);
-        bounds_ = drawn;
-        drawn_threshold_ = drawn.search.threshold;
-        return make_poly_data(drawn.surface, names());
+        IsosurfaceOptions options = options_;
+        if (outlines_) options.elements = true;
+        std::vector<double> isovalues{isovalue_};
+        isovalues.insert(isovalues.end(), more_.begin(), more_.end());
+        std::vector<Isosurface<dimension>> drawn;
+        drawn_threshold_ = projection().least_threshold();
+        if (more_.empty()) {
+            auto one = isosurface<dimension>(prerolls, isovalue_, projection(), options, work);
+            drawn_threshold_ = one.search.threshold;
+            drawn.push_back(std::move(one));
+        } else {
+            drawn = isosurfaces<dimension>(prerolls, isovalues, projection(), options, work);
+        }
+        bounds_ = {};
+        for (const auto& each : drawn) bounds_.add_bounds(each);
+
+        if (!outlines_) {
+            std::vector<Surface<dimension>> surfaces;
+            for (auto& each : drawn) surfaces.push_back(std::move(each.surface));
+            return together(surfaces, isovalues);
+        }
+        if constexpr (dimension == 3) {
+            std::vector<Surface<2>> edges;
+            for (const auto& each : drawn) edges.push_back(nestgrid::outlines(each.surface));
+            return together(edges, isovalues);
+        }
+        throw InvalidInput("outlines are those of elements on surfaces; the grid has dimension 2");
+    }
+
+    /// All surfaces as one; where there are several, each cell with its isovalue.
+    template <int dimension>
+    vtkSmartPointer<vtkPolyData> together(const std::vector<Surface<dimension>>& surfaces,
+                                          const std::vector<double>& isovalues) {
+        if (surfaces.size() == 1) return make_poly_data(surfaces.front(), names());
+        Surface<dimension> all;
+        const vtkNew<vtkDoubleArray> value;
+        value->SetName("value");
+        const auto add = [](const auto& part, auto& to) {
+            to.insert(to.end(), part.begin(), part.end());
+        };
+        for (std::size_t i = 0; i < surfaces.size(); ++i) {
+            const Surface<dimension>& part = surfaces[i];
+            const auto vertices = static_cast<std::uint32_t>(all.vertices.size());
+            const auto elements = static_cast<std::uint32_t>(all.level_of.size());
+            for (auto corners : part.simplices) {
+                for (std::uint32_t& v : corners) v += vertices;
+                all.simplices.push_back(corners);
+                value->InsertNextValue(isovalues[i]);
+            }
+            for (const std::uint32_t e : part.element_of) all.element_of.push_back(elements + e);
+            add(part.level_of, all.level_of);
+            add(part.vertices, all.vertices);
+            add(part.normals, all.normals);
+            add(part.attributes, all.attributes);
+        }
+        const auto data = make_poly_data(all, names());
+        data->GetCellData()->AddArray(value);
+        return data;
     }
 
     double isovalue_ = 0;
+    std::vector<double> more_;
+    bool outlines_ = false;
     IsosurfaceOptions options_;
     ErrorBounds bounds_;
     double drawn_threshold_ = 0;
