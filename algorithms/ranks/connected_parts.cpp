@@ -32,10 +32,10 @@ void ConnectedParts::connect(Ranks& ranks, std::vector<Pair> pairs) {
     for (const Pair& pair : all) wholes.join(number(pair[0]), number(pair[1]));
     // The least part of a whole, which stands for it, is on its least rank.
     for (std::uint32_t i = 0; i < parts.size(); ++i) {
-        if (parts[i].rank != ranks.rank()) continue;
-        const std::uint32_t least = wholes.root(i);
-        rank_[parts[i].number] = parts[least].rank;
-        less_ += least == i ? 0 : 1;
+        const Part& whole = parts[wholes.root(i)];
+        if (parts[i].rank == ranks.rank()) rank_[parts[i].number] = whole.rank;
+        if (whole.rank == ranks.rank() && parts[i] != whole)
+            members_.push_back({parts[i], whole.number});
     }
 }
 

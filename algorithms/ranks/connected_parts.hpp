@@ -10,8 +10,8 @@
 
 namespace nestgrid::engine {
 
-/// Which parts of pieces belong together, because they have a vertex in common. The least rank
-/// stands for a whole.
+/// Which parts of pieces belong together, because they have a vertex in common. The least part of
+/// the least rank stands for a whole.
 class ConnectedParts {
 public:
     /// Collective, one exchange and one gathering of pairs of parts.
@@ -37,21 +37,27 @@ public:
         const auto found = rank_.find(part);
         return found == rank_.end() ? nullptr : &found->second;
     }
-    /// How many parts of this rank do not stand for a whole.
-    std::uint64_t own_less_whole() const { return less_; }
 
-private:
+    /// A part of a piece, by its least vertex there.
     struct Part {
         int rank;
         std::uint32_t number;
         auto operator<=>(const Part&) const = default;
     };
+    /// A part of another rank, and the part of this rank that stands for its whole.
+    struct Member {
+        Part other;
+        std::uint32_t whole;
+    };
+    std::span<const Member> of_own_wholes() const { return members_; }
+
+private:
     using Pair = std::array<Part, 2>;
 
     void connect(Ranks& ranks, std::vector<Pair> pairs);
 
     std::unordered_map<std::uint32_t, int> rank_;  // of the parts that several ranks have
-    std::uint64_t less_ = 0;
+    std::vector<Member> members_;
 };
 
 }  // namespace nestgrid::engine

@@ -9,6 +9,7 @@
 #include <nestgrid/detail/forwarding_hierarchy.hpp>
 #include <projection/made_for_ranks.hpp>
 #include <ranks/agreement.hpp>
+#include <ranks/claims.hpp>
 #include <ranks/hanging_across.hpp>
 #include <walk/for_each_element.hpp>
 
@@ -109,6 +110,7 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
         std::make_shared<engine::SharedNodes>(ranks, grid.epoch(), std::move(places));
     const engine::BeforeSharing before(grid, *shared);
     std::vector<engine::SharedNodes::Candidate> nodes;
+    std::vector<engine::ClaimPath> claims;
     const auto asked = [&] {
         return (grid.offers(Feature::own_keys) ? "a distributed grid with own keys"
                                                : "a distributed grid") +
@@ -124,6 +126,9 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
     engine::together(shared.get(), asked, [&] {
         engine::require_drawn_on_ranks(grid);
         nodes = engine::nodes_of(before);
+        if (!says.place) {
+            engine::for_each_claim(grid, [&](const auto& path) { claims.push_back(path); });
+        }
         std::size_t at = 0;
         for (std::size_t i = 0; i < grid.coarse_count(); ++i) {
             if (shared->coarse_place(i) >= first) continue;
@@ -133,6 +138,7 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
         Family family;
         if (grid.coarse_count() > 0) grid.coarse(grid.open().get(), at, coarse, family);
     });
+    if (!says.place) engine::require_one_rank_each(ranks, claims, grid.coarse_count());
     shared->set_corner(engine::corner_of_all(ranks, first, coarse.corners[0]));
     shared->find(nodes, most_sharers, engine::may_differ(grid));
     shared->set_hanging(engine::hanging_across(before, *shared));

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include <nestgrid/algorithms/isosurfaces.hpp>
-#include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/detail/union_find.hpp>
 #include <nestgrid/error.hpp>
 
 #include <surfaces/triangle_sides.hpp>
+#include <surfaces/triangle_terms.hpp>
 
 namespace nestgrid {
 
@@ -48,44 +48,52 @@ std::vector<std::uint32_t> number_components(const Surface<3>& surface) {
     return component_of;
 }
 
-/// Adds a triangle to measures.
-/// \param origin apex of the cones whose volumes are added
-void add_triangle(const Surface<3>& surface, const std::array<std::uint32_t, 3>& t,
-                  const Point& origin, const std::vector<bool>& open, SurfaceMeasures& to) {
-    const Point a = surface.vertices[t[0]] - origin;
-    const Point b = surface.vertices[t[1]] - origin;
-    const Point c = surface.vertices[t[2]] - origin;
-    const Point normal = 0.5 * cross(b - a, c - a);
-    const double area = norm(normal);
-    ++to.triangles;
-    to.area += area;
-    to.area_vector = to.area_vector + normal;
-    to.volume += dot(a, cross(b, c)) / 6;
-    to.closed = to.closed && !open[t[0]] && !open[t[1]] && !open[t[2]];
-    const std::size_t attributes = to.integrals.size();
-    for (std::size_t i = 0; i < attributes; ++i) {
-        double sum = 0;
-        for (const std::uint32_t v : t) sum += surface.attributes[v * attributes + i];
-        to.integrals[i] += area * sum / 3;
-    }
-}
-
 }  // namespace
 
+SurfaceMeasures engine::measures_of(std::span<const double> sums) {
+    SurfaceMeasures measures;
+    measures.triangles = static_cast<std::size_t>(sums[0]);
+    measures.area = sums[1];
+    measures.area_vector = {sums[2], sums[3], sums[4]};
+    measures.volume = sums[5];
+    measures.integrals.assign(sums.begin() + first_integral, sums.end());
+    return measures;
+}
+
+void engine::require_vector(std::size_t attributes, std::size_t first) {
+    if (attributes >= first + 3) return;
+    throw InvalidInput("the surface has " + std::to_string(attributes) +
+                       " attributes, too few for a vector field from number " +
+                       std::to_string(first) + " on");
+}
+
 SurfaceMeasurement measure_surface(const Surface<3>& surface) {
-    const std::vector<bool> open = open_vertices(surface);
-    const Point origin = surface.vertices.empty() ? Point{} : surface.vertices.front();
-    SurfaceMeasures nothing;
-    nothing.integrals.assign(attribute_count(surface), 0.0);
     SurfaceMeasurement result;
-    result.total = nothing;
     result.component_of = number_components(surface);
+    const std::size_t terms = engine::first_integral + attribute_count(surface);
+    const Point origin = engine::origin_of(surface);
+    std::vector<engine::ExactSum> total(terms);
+    std::vector<double> sums(terms);
+    engine::sum_by_component<std::uint32_t>(
+        result.component_of, terms,
+        [&](std::size_t t, std::span<double> out) {
+            engine::measure_triangle(surface, t, origin, out);
+        },
+        [&](std::uint32_t, std::size_t term, engine::ExactSum& sum) {
+            sum.for_each_part([&](double part) { total[term].add(part); });
+            sums[term] = sum.value();
+            if (term + 1 == terms) result.components.push_back(engine::measures_of(sums));
+        });
+    for (std::size_t k = 0; k < terms; ++k) sums[k] = total[k].value();
+    result.total = engine::measures_of(sums);
+    const std::vector<bool> open = open_vertices(surface);
     for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
-        const std::uint32_t component = result.component_of[t];
-        if (component == result.components.size()) result.components.push_back(nothing);
-        for (SurfaceMeasures* const to : {&result.components[component], &result.total}) {
-            add_triangle(surface, surface.simplices[t], origin, open, *to);
+        for (const std::uint32_t v : surface.simplices[t]) {
+            if (open[v]) result.components[result.component_of[t]].closed = false;
         }
+    }
+    for (const SurfaceMeasures& of : result.components) {
+        result.total.closed = result.total.closed && of.closed;
     }
     return result;
 }
@@ -93,22 +101,16 @@ SurfaceMeasurement measure_surface(const Surface<3>& surface) {
 std::vector<double> flux(const Surface<3>& surface, const SurfaceMeasurement& measured,
                          std::size_t first) {
     const std::size_t attributes = attribute_count(surface);
-    if (!surface.vertices.empty() && attributes < first + 3) {
-        throw InvalidInput("the surface has " + std::to_string(attributes) +
-                           " attributes, too few for a vector field from number " +
-                           std::to_string(first) + " on");
-    }
+    if (!surface.vertices.empty()) engine::require_vector(attributes, first);
     std::vector<double> result(measured.components.size(), 0.0);
-    for (std::size_t t = 0; t < surface.simplices.size(); ++t) {
-        const auto& of = surface.simplices[t];
-        const Point& x = surface.vertices[of[0]];
-        const Point normal = 0.5 * cross(surface.vertices[of[1]] - x, surface.vertices[of[2]] - x);
-        for (std::size_t d = 0; d < 3; ++d) {
-            double sum = 0;
-            for (const std::uint32_t v : of) sum += surface.attributes[v * attributes + first + d];
-            result[measured.component_of[t]] += normal[d] * sum / 3;
-        }
-    }
+    engine::sum_by_component<std::uint32_t>(
+        measured.component_of, 1,
+        [&](std::size_t t, std::span<double> out) {
+            out[0] = engine::flux_through(surface, t, attributes, first);
+        },
+        [&](std::uint32_t component, std::size_t, engine::ExactSum& sum) {
+            result[component] = sum.value();
+        });
     return result;
 }
 

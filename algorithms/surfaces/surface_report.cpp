@@ -13,6 +13,7 @@
 #include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/detail/union_find.hpp>
 #include <nestgrid/error.hpp>
+#include <surfaces/triangle_terms.hpp>
 
 namespace nestgrid {
 
@@ -194,30 +195,32 @@ bool is_degenerate(const Point& origin, const std::array<Point, 3>& corner, doub
 /// Fills in the areas and the degenerate triangles, and returns the volume.
 double measure(const Surface<3>& surface, SurfaceReport& report) {
     const bool has_normals = surface.normals.size() == surface.vertices.size();
-    const Point origin = surface.vertices.empty() ? Point{} : surface.vertices.front();
+    const Point origin = engine::origin_of(surface);
     double greatest = 0;
     for (const Point& x : surface.vertices) {
         for (const double coordinate : x) greatest = std::max(greatest, std::abs(coordinate));
     }
     const double limit = 4 * std::numeric_limits<double>::epsilon() * greatest;
-    double volume = 0;
-    for (const auto& t : surface.simplices) {
-        const Point a = surface.vertices[t[0]] - origin;
-        const Point b = surface.vertices[t[1]] - origin;
-        const Point c = surface.vertices[t[2]] - origin;
-        const Point n = cross(b - a, c - a);
-        const double area = norm(n) / 2;
-        if (!is_clearly_wide({a, b, c}, n, limit) && is_degenerate(origin, {a, b, c}, 2 * area)) {
+    engine::ExactSum area;
+    engine::ExactSum behind;
+    engine::ExactSum volume;
+    for (const auto& simplex : surface.simplices) {
+        const auto t = engine::from_least_corner(surface, simplex);
+        const engine::TriangleTerms terms(surface, t, origin);
+        if (!is_clearly_wide(terms.corner, 2 * terms.normal, limit) &&
+            is_degenerate(origin, terms.corner, 2 * terms.area)) {
             ++report.degenerate_triangles;
         }
-        report.area += area;
+        area.add(terms.area);
+        volume.add(terms.volume);
         for (const std::uint32_t v : t) {
-            const bool behind = has_normals && dot(surface.normals[v], n) < 0;
-            report.area_behind += behind ? area / 3 : 0;
+            const bool is_behind = has_normals && dot(surface.normals[v], terms.normal) < 0;
+            if (is_behind) behind.add(terms.area / 3);
         }
-        volume += dot(a, cross(b, c)) / 6;
     }
-    return volume;
+    report.area = area.value();
+    report.area_behind = behind.value();
+    return volume.value();
 }
 
 }  // namespace

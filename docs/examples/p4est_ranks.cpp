@@ -84,10 +84,14 @@ void draw(p8est_t* forest, const char* path) {
     const JoinedPiece joined = join_pieces(piece, grid);
     write_vtp(ranks, piece, joined, path);
     // [file]
+    // [measures]
+    const SurfaceMeasures whole = measure_pieces(piece, joined, grid).total;
+    // [measures]
     if (ranks.rank() != 0) return;
-    std::printf("%d ranks, %llu triangles, %llu open edges, |U| <= %.3f\n", ranks.size(),
-                static_cast<unsigned long long>(joined.simplices),
-                static_cast<unsigned long long>(joined.open), piece.error_bound);
+    std::printf("%d ranks, %llu triangles, %llu open edges, |U| <= %.3f, area %.6f, volume %.6f\n",
+                ranks.size(), static_cast<unsigned long long>(joined.simplices),
+                static_cast<unsigned long long>(joined.open), piece.error_bound, whole.area,
+                whole.volume);
 }
 
 }  // namespace

@@ -183,6 +183,7 @@ function(nestgrid_warnings target)
 endfunction()
 
 # nestgrid_on_ranks(<test>...): tests that run ranks of MPI, as root, and more of them than processors.
+# Ranks that wait leave the processor to others.
 function(nestgrid_on_ranks)
   set_tests_properties(
     ${ARGN}
@@ -190,7 +191,7 @@ function(nestgrid_on_ranks)
       LABELS "distributed;mpi"
       PROCESSORS 2
       ENVIRONMENT
-      "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1")
+      "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1;OMPI_MCA_mpi_yield_when_idle=1")
 endfunction()
 
 # nestgrid_ranks_test(<name> <ranks> <seconds> <command>): a command on so many ranks.

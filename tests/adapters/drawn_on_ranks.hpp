@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cstdio>
 #include <iterator>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <nestgrid/adapters/mpi.hpp>
@@ -104,13 +106,24 @@ void sort(std::vector<Drawn<dim>>& all) {
     }
 }
 
-/// What all ranks drew together, on each of them.
+/// Waits for the other ranks asleep. Within MPI a rank waits awake, and takes a processor's time.
+inline void sleep_until_all() {
+    MPI_Request barrier = MPI_REQUEST_NULL;
+    MPI_Ibarrier(MPI_COMM_WORLD, &barrier);
+    for (int there = 0; there == 0;) {
+        MPI_Test(&barrier, &there, MPI_STATUS_IGNORE);
+        if (there == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+}
+
+/// What all ranks drew together, on the first of them.
 template <int dim>
 std::vector<Drawn<dim>> gathered(std::vector<Drawn<dim>> own, Ranks& ranks) {
     for (Drawn<dim>& drawn : own) {
         const auto bytes = std::as_bytes(std::span(drawn.simplices));
         const auto all = ranks.gather({bytes.begin(), bytes.end()});
         drawn.simplices.clear();
+        if (ranks.rank() != 0) continue;
         for (const Ranks::Bytes& each : all) {
             const auto* const begin = reinterpret_cast<const Simplex<dim>*>(each.data());
             drawn.simplices.insert(drawn.simplices.end(), begin,

@@ -211,14 +211,18 @@ int compare(const char* name, p8est_connectivity_t* shape, bool balanced, bool n
     constexpr int deepest = 4;
     const Forest parts(MPI_COMM_WORLD, shape, deepest, balanced);
     const auto found = gathered(draw_on_ranks(parts, noise, sharers, ranks), ranks);
-    if (ranks.rank() != 0) return 0;
-    const auto expected = draw_alone(Forest(MPI_COMM_SELF, shape, deepest, balanced), noise);
-    const std::string what = std::string(name) + (balanced ? ", balanced" : ", unbalanced") +
-                             (noise ? ", noise, " : ", smooth, ") + std::to_string(sharers) +
-                             " sharers";
-    return count_different(what, ranks.size(),
-                           static_cast<unsigned long long>(parts.get()->global_num_quadrants),
-                           found, expected);
+    int wrong = 0;
+    if (ranks.rank() == 0) {
+        const auto expected = draw_alone(Forest(MPI_COMM_SELF, shape, deepest, balanced), noise);
+        const std::string what = std::string(name) + (balanced ? ", balanced" : ", unbalanced") +
+                                 (noise ? ", noise, " : ", smooth, ") + std::to_string(sharers) +
+                                 " sharers";
+        wrong = count_different(what, ranks.size(),
+                                static_cast<unsigned long long>(parts.get()->global_num_quadrants),
+                                found, expected);
+    }
+    sleep_until_all();
+    return wrong;
 }
 
 /// A plane through many nodes, along a diagonal of all leaves: where each rank merges vertices at

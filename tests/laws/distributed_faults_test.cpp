@@ -32,6 +32,8 @@ struct Odd {
     std::uint64_t epoch_in_step = 9;  ///< from this step on its grid has changed
     bool sink_fails = false;          ///< takes no triangles
     bool moves_keys = false;          ///< two of its nodes have each other's keys
+    int claims_leaf_of = -1;          ///< it says that it has a leaf of this rank
+    bool loses_leaf = false;          ///< it says that one of its leaves is elsewhere
 };
 
 /// A grid that changes, and may have keys of its own that mean something else elsewhere.
@@ -115,7 +117,10 @@ private:
     template <class Real>
     void draw(Ranks& ranks, const Odd& odd) const {
         int step = 0;
-        const Part part(*whole_, owner_, ranks.rank());
+        std::vector<int> owner = owner_;
+        if (odd.claims_leaf_of >= 0) *std::ranges::find(owner, odd.claims_leaf_of) = odd_rank;
+        if (odd.loses_leaf) *std::ranges::find(owner, odd_rank) = 0;
+        const Part part(*whole_, owner, ranks.rank());
         std::vector<Real> values;
         for (const double v : values_) values.push_back(static_cast<Real>(odd.scale * v));
         for (std::size_t n = 0; odd.bad != 0 && n < part.visited.size(); ++n) {
@@ -233,6 +238,14 @@ TEST(DistributedFaults, OneRankCancels) {
 TEST(DistributedFaults, OwnKeysAreNotGlobal) {
     expect_all_say("keys", {.moves_keys = true},
                    {"ranks ", "have a node at two places under one key"});
+}
+
+/// A leaf that no rank has would be a hole, and one that two have would be drawn twice.
+TEST(DistributedFaults, LeavesAreNotOnOneRankEach) {
+    const std::string must = "presence must give each leaf to one rank, but element ";
+    expect_all_say("one leaf twice", {.claims_leaf_of = 1}, {must, " is on ranks 1 and 2"});
+    expect_all_say("one leaf twice", {.claims_leaf_of = 3}, {must, " is on ranks 2 and 3"});
+    expect_all_say("one leaf less", {.loses_leaf = true}, {must, " is on no rank"});
 }
 
 TEST(DistributedFaults, PlacesOfNodesDiffer) {

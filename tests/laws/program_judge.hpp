@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/join_pieces.hpp>
+#include <nestgrid/algorithms/surface_measures.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
 #include "distributed_judge.hpp"
@@ -67,12 +68,44 @@ private:
     }
 };
 
+/// A surface whose attributes are the positions of its vertices.
+inline Surface<3> with_positions(Surface<3> surface) {
+    surface.attributes.clear();
+    for (const Point& x : surface.vertices) {
+        surface.attributes.insert(surface.attributes.end(), x.begin(), x.end());
+    }
+    return surface;
+}
+
+/// Measures and fluxes of all components, in an order of their own, and of the whole.
+using Measures = std::vector<std::vector<double>>;
+
+inline Measures numbers_of(const SurfaceMeasurement& measured, const std::vector<double>& flux) {
+    const auto numbers = [](const SurfaceMeasures& m) {
+        std::vector<double> row{static_cast<double>(m.triangles), m.area, m.volume,
+                                m.closed ? 1.0 : 0.0};
+        row.insert(row.end(), m.area_vector.begin(), m.area_vector.end());
+        row.insert(row.end(), m.integrals.begin(), m.integrals.end());
+        return row;
+    };
+    Measures rows;
+    for (std::size_t c = 0; c < flux.size(); ++c) {
+        rows.push_back(numbers(measured.components.at(c)));
+        rows.back().push_back(flux[c]);
+    }
+    std::ranges::sort(rows);
+    rows.push_back(numbers(measured.total));
+    return rows;
+}
+
 /// The pieces of all ranks, as one indexed surface.
 template <int dim>
 struct Joined {
     Surface<dim> surface;
     JoinedPiece totals;
-    std::uint64_t elsewhere = 0;  ///< vertices that two pieces have at different places
+    std::vector<std::uint64_t> component_of;
+    std::vector<Measures> measures;  ///< as each rank knows them
+    std::uint64_t elsewhere = 0;     ///< vertices that two pieces have at different places
 
     void add(const Isosurface<dim>& piece, const JoinedPiece& as) {
         totals = as;
@@ -91,12 +124,27 @@ struct Joined {
         };
         put(piece.surface.simplices, surface.simplices);
         put(piece.surface.boundary, surface.boundary);
+        component_of.insert(component_of.end(), as.component_of.begin(), as.component_of.end());
+    }
+    /// Whether simplices have the number of a component, and the same one where they meet.
+    bool has_components() const {
+        std::vector<std::uint64_t> of_vertex(surface.vertices.size(), totals.components);
+        if (component_of.size() != surface.simplices.size()) return false;
+        for (std::size_t s = 0; s < component_of.size(); ++s) {
+            if (component_of[s] >= totals.components) return false;
+            for (const std::uint32_t v : surface.simplices[s]) {
+                if (of_vertex[v] == totals.components) of_vertex[v] = component_of[s];
+                if (of_vertex[v] != component_of[s]) return false;
+            }
+        }
+        return true;
     }
     /// What differs from the surface of one rank.
     std::string compare(const Surface<dim>& whole) const {
         if (elsewhere != 0) return "copies of vertices are at different places";
         if (totals.vertices != whole.vertices.size()) return "another number of vertices";
         if (totals.simplices != whole.simplices.size()) return "another number of simplices";
+        if (!has_components()) return "other components";
         if constexpr (dim == 3) {
             const SurfaceReport a = surface_report(surface);
             const SurfaceReport b = surface_report(whole);
@@ -111,6 +159,13 @@ struct Joined {
             if (totals.components != b.components) return "another number of components";
             if (totals.open != b.open_edges) return "other open edges";
             if (totals.on_boundary != b.boundary_edges) return "other boundary edges";
+            if (a.area != b.area || a.volume != b.volume) return "another area or volume";
+            const Surface<3> positions = with_positions(whole);
+            const SurfaceMeasurement measured = measure_surface(positions);
+            const Measures expected = numbers_of(measured, flux(positions, measured));
+            for (const Measures& of_rank : measures) {
+                if (of_rank != expected) return "other measures";
+            }
         }
         return {};
     }
@@ -170,8 +225,16 @@ public:
             program_(grid, field, threads, [&](const Isosurface<dim>& piece) {
                 ranks.begin(ForgetfulRanks::Step::share);
                 const JoinedPiece as = join_pieces(piece, grid);
+                Measures measures;
+                if constexpr (dim == 3) {
+                    Isosurface<3> positions;
+                    positions.surface = with_positions(piece.surface);
+                    measures = numbers_of(measure_pieces(positions, as, grid),
+                                          flux_of_pieces(positions, as, grid));
+                }
                 const std::scoped_lock lock(mutex);
                 joined.at(i).add(piece, as);
+                joined.at(i).measures.push_back(std::move(measures));
                 drawn.at(i++).add(piece);
                 ranks.begin(ForgetfulRanks::Step::draw);
             });
