@@ -74,7 +74,16 @@ int main(int argc, char** argv) {
     };
     write_plotfile<3, double>(folder / "holed", blocks, fields, broken(NAN));
     write_plotfile<3, double>(folder / "infinite", blocks, fields, broken(INFINITY));
+    // A cylinder along z is no part of the domain; what is in it is no distance.
+    const auto around_body = [](const Point& x, int field) {
+        const bool is_inside = std::hypot(x[0] - 0.75, x[1] - 0.5) < 0.1;
+        if (field == 2) return is_inside ? 0.0 : 1.0;
+        return is_inside ? -1e9 : ball(0, 3)(x, field);
+    };
+    write_plotfile<3, double>(folder / "around_body", blocks, {"distance", "place", "vfrac"},
+                              around_body, 0, {.least_fraction = 1e-6});
     write_plotfile<3, double>(folder / "small", three_levels<3>(8, 1), fields, ball(0, 3));
-    write_plotfile<2, float>(folder / "plane", three_levels<2>(16, 2), fields, ball(0, 2), 0, 1);
+    write_plotfile<2, float>(folder / "plane", three_levels<2>(16, 2), fields, ball(0, 2), 0,
+                             {.ghosts = 1});
     return 0;
 }

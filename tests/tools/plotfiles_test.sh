@@ -54,6 +54,13 @@ awk -v area="$(value area)" 'BEGIN { exit !(area > 1.08 && area < 1.11) }' ||
     fail "a sphere with a hole has the area $(value area)"
 run isosurface holed --array place --value 0.5 --threshold 0
 [ "$(value open_edges)" = 0 ] || fail "holes of another field: $(cat out)"
+# What an embedded boundary covers is no part of the domain: a cylinder through the sphere.
+run isosurface around_body --array distance --value 0 --threshold 0
+[ "$(value open_edges)" -gt 50 ] || fail "no hole where a body is: $(cat out)"
+awk -v area="$(value area)" 'BEGIN { exit !(area > 1.02 && area < 1.045) }' ||
+    fail "a sphere beside a body has the area $(value area)"
+run info around_body
+grep -qE '^distance +-0\.2[0-9]+ +0\.[0-9]+$' out && grep -qE '^vfrac +0 +1$' out || fail "info of a body: $(cat out)"
 refused 1 "a value of the field is not a usable number: inf, at \(0\.[0-9]+, 0\.[0-9]+, 0\.[0-9]+\)" \
     isosurface infinite --array distance --value 0
 run info infinite

@@ -4,22 +4,23 @@
 // Plotfiles of AMReX, and of BoxLib before it: a folder with the texts
 // Header and Level_l/Cell_H, and with files of records, one a box: a line of text, then numbers, x
 // fastest, component by component. The files are mapped: no number is copied, and only those are
-// read from the disk that are looked at.
+// read from the disk that are looked at. Copied are numbers in another order of bytes, and boxes
+// with cells that an embedded boundary covers.
 //
 // Everything in the texts is checked against the files before it is believed.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <nestgrid/adapters/amrex_copies.hpp>
 #include <nestgrid/adapters/amrex_mapping.hpp>
-#include <nestgrid/adapters/amrex_text.hpp>
 #include <nestgrid/adapters/block_fields.hpp>
 
 namespace nestgrid {
@@ -28,14 +29,14 @@ namespace nestgrid {
 class AmrexPlotfile {
 public:
     /// \throw IoError naming file and line, where it is none, is damaged or ends too early, has
-    /// data of nodes, spherical coordinates, records without headers, or numbers of another machine
+    /// data of nodes, spherical coordinates, or numbers that are no floats or doubles
     explicit AmrexPlotfile(const std::filesystem::path& folder);
 
     int dimension() const { return static_cast<int>(dim_); }
     double time() const { return time_; }
     const std::vector<std::string>& fields() const { return fields_; }
     /// Whether numbers are doubles; floats otherwise.
-    bool is_double() const { return bytes_a_number_ == sizeof(double); }
+    bool is_double() const { return number_type_.bytes == sizeof(double); }
     std::size_t level_count() const { return levels_.size(); }
     std::size_t box_count(std::size_t level) const { return levels_[level].boxes.size(); }
     /// Cells of a level, those that a finer one covers included.
@@ -45,7 +46,9 @@ public:
     /// together; BlockGrid checks the boxes
     template <int dim>
     Blocks<dim> blocks() const;
-    /// Where a field lies in the mapped files.
+    /// Where a field lies in the mapped files, or in a copy that this object, and copies of it,
+    /// keep. Cells that an embedded boundary covers have no number (NaN): where there is a field
+    /// "vfrac", of the free part of each cell, and Header ends with the least one to be drawn.
     /// \param field one of fields(), by its number
     ///
     /// \throw InvalidInput where dimension or type are others, or there is no such field
@@ -61,6 +64,11 @@ private:
         const std::byte* first = nullptr;
         Box stored;  ///< with ghost cells
     };
+    /// Where a text says that a record is.
+    struct OnDisk {
+        std::filesystem::path file;
+        std::int64_t offset = 0;
+    };
     struct Level {
         Box domain;
         std::vector<Box> boxes;
@@ -75,8 +83,13 @@ private:
     void read_header(Text& text, std::vector<std::string>& paths);
     void read_level_header(Text& text, Level& level, std::vector<std::string>& paths);
     void read_level(Level& level, const std::string& path);
-    Record read_record(const std::filesystem::path& path, std::int64_t offset, const Box& box);
-    void read_number_type(Text& text);
+    Record read_record(const OnDisk& place, const Box& box);
+    Record read_record_alone(const OnDisk& place, Box box, const std::array<int, 3>& ghosts);
+    const std::byte* numbers_at(const OnDisk& place, std::size_t line, const Box& stored,
+                                std::int64_t fields);
+    void set_number_type(const Text& text, const detail::AmrexNumberType& type);
+    template <int dim, class Real>
+    BlockArrays<dim, Real> mapped_arrays(std::size_t field) const;
     void require(bool fits, const std::string& what) const {
         if (!fits) throw InvalidInput("the plotfile '" + folder_.string() + "' has " + what);
     }
@@ -84,181 +97,16 @@ private:
     std::filesystem::path folder_;
     std::size_t dim_ = 3;
     double time_ = 0;
-    std::size_t bytes_a_number_ = 0;  // 0 before the first record
+    detail::AmrexNumberType number_type_;
     std::vector<std::string> fields_;
     Point low_{};
     Point spacing_{1, 1, 1};
     std::vector<Level> levels_;
+    std::optional<std::size_t> fractions_;  // the field of free parts of cells
+    std::vector<double> least_fractions_;   // below which a cell is covered, by level
+    std::shared_ptr<detail::AmrexCopies> copies_ = std::make_shared<detail::AmrexCopies>();
     std::map<std::filesystem::path, std::shared_ptr<const detail::AmrexMapping>> files_;
 };
-
-inline AmrexPlotfile::AmrexPlotfile(const std::filesystem::path& folder) : folder_{folder} {
-    std::vector<std::string> paths;  // of the levels
-    Text header("'" + (folder / "Header").string() + "'", text_of(mapped(folder / "Header")));
-    read_header(header, paths);
-    for (std::size_t l = 0; l < levels_.size(); ++l) read_level(levels_[l], paths[l]);
-}
-
-inline const detail::AmrexMapping& AmrexPlotfile::mapped(const std::filesystem::path& path) {
-    auto& file = files_[path];
-    if (file == nullptr) file = std::make_shared<const detail::AmrexMapping>(path);
-    return *file;
-}
-
-inline void AmrexPlotfile::read_header(Text& text, std::vector<std::string>& paths) {
-    text.line("the version");  // codes name their own
-    const std::size_t fields = text.count("the number of fields", 2);
-    text.line("the first field");
-    for (std::size_t i = 0; i < fields; ++i) fields_.emplace_back(text.line("the fields"));
-    if (fields == 0) text.fail("there are no fields");
-    dim_ = static_cast<std::size_t>(text.integer("the dimension", 2, 3));
-    time_ = text.real("the time");
-    const auto finest = text.integer("the finest level", 0, 30);
-    for (std::size_t d = 0; d < dim_; ++d) low_[d] = text.real("the begin of the domain");
-    for (std::size_t d = 0; d < dim_; ++d) text.real("the end of the domain");
-    text.line("the ratios");
-    text.line("the ratios");  // of the first direction alone; those of the domains are taken
-    levels_.resize(static_cast<std::size_t>(finest) + 1);
-    for (Level& level : levels_) level.domain = text.box(dim_);
-    for (std::size_t l = 0; l < levels_.size(); ++l) text.integer("a step", INT64_MIN, INT64_MAX);
-    for (std::size_t l = 0; l < levels_.size(); ++l) {
-        for (std::size_t d = 0; d < dim_; ++d) {
-            const double size = text.real("the size of cells");
-            if (size <= 0) text.fail("the size of cells is not above 0");
-            if (l == 0) spacing_[d] = size;
-        }
-    }
-    if (text.integer("the kind of coordinates", 0, 2) == 2) {
-        text.fail("the coordinates are spherical, which are not read");
-    }
-    text.integer("the width of the boundary", 0, INT32_MAX);
-    for (Level& level : levels_) read_level_header(text, level, paths);
-}
-
-inline void AmrexPlotfile::read_level_header(Text& text, Level& level,
-                                             std::vector<std::string>& paths) {
-    text.integer("the number of a level", 0, 30);
-    level.boxes.resize(text.count("the number of boxes", 4));
-    if (level.boxes.empty()) text.fail("a level has no boxes");
-    text.real("the time of a level");
-    text.integer("the step of a level", INT64_MIN, INT64_MAX);
-    // Ends in space, which follow from the cells.
-    for (std::size_t i = 0; i < 2 * dim_ * level.boxes.size(); ++i) text.real("an end of a box");
-    paths.emplace_back(text.word("the path of a level"));
-}
-
-/// \param path relative to the folder, of the files of the level without what follows on "Cell"
-inline void AmrexPlotfile::read_level(Level& level, const std::string& path) {
-    const std::filesystem::path relative(path);
-    for (const auto& part : relative) {
-        if (relative.is_absolute() || part == "..") {
-            throw IoError("'" + (folder_ / "Header").string() + "': the path '" + path +
-                          "' leaves the folder");
-        }
-    }
-    const std::filesystem::path name = folder_ / (path + "_H");
-    Text text("'" + name.string() + "'", text_of(mapped(name)));
-    if (text.integer("the version", 0, INT32_MAX) != 1) {
-        text.fail("its records have no headers, which is not read");
-    }
-    text.integer("the order of boxes", 0, INT32_MAX);
-    if (text.integer("the number of fields", 0, INT32_MAX) !=
-        static_cast<std::int64_t>(fields_.size())) {
-        text.fail("there are not as many fields as in Header");
-    }
-    if (text.has_next('(')) {
-        text.place_of(dim_);
-    } else {
-        text.integer("the number of ghost cells", 0, INT32_MAX);
-    }
-    text.expect('(', "the boxes");
-    const auto require_count = [&](std::size_t count) {
-        if (count != level.boxes.size()) text.fail("there are not as many boxes as in Header");
-    };
-    require_count(text.count("the number of boxes", 1));
-    text.integer("a number behind that of boxes", 0, INT32_MAX);
-    for (Box& box : level.boxes) box = text.box(dim_);
-    text.expect(')', "the boxes");
-    require_count(text.count("the number of records", 1));
-    for (const Box& box : level.boxes) {
-        if (text.word("a record") != "FabOnDisk:") text.fail("a record is no FabOnDisk");
-        const std::string file(text.word("the file of a record"));
-        if (file.find('/') != std::string::npos) text.fail("a record is in another folder");
-        const auto offset = text.integer("the place of a record", 0, INT64_MAX);
-        level.records.push_back(read_record(name.parent_path() / file, offset, box));
-    }
-}
-
-inline auto AmrexPlotfile::read_record(const std::filesystem::path& path, std::int64_t offset,
-                                       const Box& box) -> Record {
-    const std::string_view all = text_of(mapped(path));
-    const std::string name = path.string();
-    if (static_cast<std::uint64_t>(offset) >= all.size()) {
-        throw IoError("'" + name + "' is truncated: it has " + std::to_string(all.size()) +
-                      " bytes, but a record at " + std::to_string(offset));
-    }
-    constexpr std::size_t longest_line = 1000;
-    const std::string_view begin = all.substr(static_cast<std::size_t>(offset), longest_line);
-    Text text("the record at " + std::to_string(offset) + " of '" + name + "'",
-              begin.substr(0, begin.find('\n')));
-    if (text.word("the word FAB") != "FAB") text.fail("there is no FAB in the new format");
-    read_number_type(text);
-    Record record;
-    record.stored = text.box(dim_);
-    const auto fields = text.integer("the number of fields", 0, INT32_MAX);
-    if (fields < static_cast<std::int64_t>(fields_.size())) text.fail("there are too few fields");
-    const std::size_t line = begin.find('\n');
-    if (line == std::string_view::npos) text.fail("the line has no end");
-    double bytes = static_cast<double>(bytes_a_number_) * static_cast<double>(fields);
-    for (std::size_t d = 0; d < dim_; ++d) {
-        if (record.stored.lower[d] > box.lower[d] || record.stored.upper[d] < box.upper[d]) {
-            text.fail("the box is not within that of the record");
-        }
-        bytes *= static_cast<double>(record.stored.upper[d]) - record.stored.lower[d] + 1;
-    }
-    const std::size_t first = static_cast<std::size_t>(offset) + line + 1;
-    if (bytes > static_cast<double>(all.size() - first)) {
-        throw IoError("'" + name + "' is truncated: it has " + std::to_string(all.size()) +
-                      " bytes, too few for the record at " + std::to_string(offset));
-    }
-    record.first = reinterpret_cast<const std::byte*>(all.data()) + first;
-    return record;
-}
-
-/// Bits of the parts of a number, and the order of its bytes: ((8, (64 11 52 0 1 12 0 1023)),
-/// (8, (8 7 6 5 4 3 2 1))) is a double whose last byte stands first.
-inline void AmrexPlotfile::read_number_type(Text& text) {
-    const auto list = [&](const char* what) {
-        std::vector<std::int64_t> numbers;
-        text.expect('(', what);
-        numbers.resize(static_cast<std::size_t>(text.integer(what, 0, 16)));
-        text.expect(',', what);
-        text.expect('(', what);
-        for (std::int64_t& number : numbers) number = text.integer(what, 0, INT32_MAX);
-        text.expect(')', what);
-        text.expect(')', what);
-        return numbers;
-    };
-    text.expect('(', "the type of numbers");
-    const auto format = list("the format of numbers");
-    text.expect(',', "the type of numbers");
-    const auto order = list("the order of bytes");
-    text.expect(')', "the type of numbers");
-    const std::size_t bytes = order.size();
-    const std::vector<std::int64_t> single{32, 8, 23, 0, 1, 9, 0, 127};
-    const std::vector<std::int64_t> twofold{64, 11, 52, 0, 1, 12, 0, 1023};
-    if (!(bytes == 8 && format == twofold) && !(bytes == 4 && format == single)) {
-        text.fail("numbers are neither IEEE floats nor doubles");
-    }
-    for (std::size_t i = 0; i < bytes; ++i) {
-        const bool is_little = std::endian::native == std::endian::little;
-        if (order[i] != static_cast<std::int64_t>(is_little ? bytes - i : i + 1)) {
-            text.fail("numbers have the byte order of another machine");
-        }
-    }
-    if (bytes_a_number_ == 0) bytes_a_number_ = bytes;
-    if (bytes != bytes_a_number_) text.fail("some numbers are floats and others doubles");
-}
 
 inline std::uint64_t AmrexPlotfile::cell_count(std::size_t level) const {
     std::uint64_t sum = 0;
@@ -307,13 +155,7 @@ Blocks<dim> AmrexPlotfile::blocks() const {
 }
 
 template <int dim, class Real>
-BlockArrays<dim, Real> AmrexPlotfile::arrays(std::size_t field) const {
-    require(dim_ == static_cast<std::size_t>(dim),
-            std::to_string(dim_) + " dimensions, not " + std::to_string(dim));
-    require(sizeof(Real) == bytes_a_number_,
-            "numbers of " + std::to_string(bytes_a_number_) + " bytes");
-    require(field < fields_.size(), std::to_string(fields_.size()) +
-                                        " fields, none with the number " + std::to_string(field));
+BlockArrays<dim, Real> AmrexPlotfile::mapped_arrays(std::size_t field) const {
     BlockArrays<dim, Real> arrays;
     for (const Level& level : levels_) {
         auto& of_level = arrays.emplace_back();
@@ -335,4 +177,54 @@ BlockArrays<dim, Real> AmrexPlotfile::arrays(std::size_t field) const {
     return arrays;
 }
 
+template <int dim, class Real>
+BlockArrays<dim, Real> AmrexPlotfile::arrays(std::size_t field) const {
+    require(dim_ == static_cast<std::size_t>(dim),
+            std::to_string(dim_) + " dimensions, not " + std::to_string(dim));
+    require(sizeof(Real) == number_type_.bytes,
+            "numbers of " + std::to_string(number_type_.bytes) + " bytes");
+    require(field < fields_.size(), std::to_string(fields_.size()) +
+                                        " fields, none with the number " + std::to_string(field));
+    auto arrays = mapped_arrays<dim, Real>(field);
+    const bool hides = fractions_ && field != *fractions_;
+    if (number_type_.is_native() && !hides) return arrays;
+    BlockArrays<dim, Real> fractions(arrays.size());
+    if (hides) fractions = mapped_arrays<dim, Real>(*fractions_);
+    const auto cells_of = [&](std::size_t l, std::size_t b) {
+        const Box& box = levels_[l].boxes[b];
+        detail::CellRange<dim> cells;
+        for (std::size_t d = 0; d < dim_; ++d) cells.high[d] = box.upper[d] - box.lower[d] + 1;
+        return cells;
+    };
+    const auto& copies = copies_->of_field(field, [&](auto& all) {
+        for (std::size_t l = 0; l < arrays.size(); ++l) {
+            for (std::size_t b = 0; b < arrays[l].size(); ++b) {
+                detail::AmrexCovered<dim, Real> covered;
+                if (hides) covered = {fractions[l][b], number_type_, least_fractions_[l]};
+                const auto cells = cells_of(l, b);
+                all.emplace_back();
+                if (number_type_.is_native() && !covered.any(cells)) continue;
+                all.back() =
+                    detail::AmrexCopies::copied(arrays[l][b], cells, number_type_, covered);
+            }
+        }
+    });
+    std::size_t number = 0;
+    for (std::size_t l = 0; l < arrays.size(); ++l) {
+        for (std::size_t b = 0; b < arrays[l].size(); ++b) {
+            const std::vector<std::byte>& copy = copies[number++];
+            if (copy.empty()) continue;
+            arrays[l][b].first = copy.data();
+            auto stride = static_cast<std::ptrdiff_t>(sizeof(Real));
+            for (std::size_t d = 0; d < dim_; ++d) {
+                arrays[l][b].stride[d] = stride;
+                stride *= cells_of(l, b).high[d];
+            }
+        }
+    }
+    return arrays;
+}
+
 }  // namespace nestgrid
+
+#include <nestgrid/adapters/amrex_plotfile_steps.hpp>

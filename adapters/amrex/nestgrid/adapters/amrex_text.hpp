@@ -77,6 +77,13 @@ public:
         skip_blanks();
         return at_ < text_.size() && text_[at_] == c;
     }
+    /// Whether nothing but blanks is left.
+    bool is_at_end() {
+        skip_blanks();
+        return left() == 0;
+    }
+    /// To the next c, or to the end.
+    void skip_to(char c) { at_ = std::min(text_.find(c, at_), text_.size()); }
     void expect(char c, const char* what) {
         if (!has_next(c)) fail(std::string(what) + ": '" + c + "' is missing");
         ++at_;
