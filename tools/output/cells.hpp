@@ -2,20 +2,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include <vtkCellArray.h>
-#include <vtkCellArrayIterator.h>
-#include <vtkSmartPointer.h>
 
-/// Calls function(corners) for each cell, with numbers of points.
+/// Calls function(corners) for each cell, with numbers of points of 32 or 64 bits as they are kept,
+/// until it returns false. VTK's own iterator copies those of 32 bits.
+/// \return whether it never did
 template <class Function>
-void for_each_cell(vtkCellArray* cells, const Function& function) {
-    vtkIdType count = 0;
-    const vtkIdType* corners = nullptr;
-    const auto cell = vtkSmartPointer<vtkCellArrayIterator>::Take(cells->NewIterator());
-    for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell()) {
-        cell->GetCurrentCell(count, corners);
-        function(std::span<const vtkIdType>(corners, static_cast<std::size_t>(count)));
-    }
+bool for_each_cell(vtkCellArray* cells, const Function& function) {
+    const auto visit = [&](auto* offsets, auto* connectivity) {
+        const auto* const first = offsets->GetPointer(0);
+        const auto* const corners = connectivity->GetPointer(0);
+        for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i) {
+            const auto count = static_cast<std::size_t>(first[i + 1] - first[i]);
+            if (!function(std::span(corners + first[i], count))) return false;
+        }
+        return true;
+    };
+    return cells->IsStorage64Bit()
+               ? visit(cells->GetOffsetsArray64(), cells->GetConnectivityArray64())
+               : visit(cells->GetOffsetsArray32(), cells->GetConnectivityArray32());
 }

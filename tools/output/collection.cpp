@@ -16,32 +16,12 @@
 #include "options/command_line.hpp"
 #include "output/surface_file.hpp"
 #include "output/text_file.hpp"
+#include "output/xml.hpp"
 #include "temporary_file.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A name as the value of an attribute.
-std::string quoted(const std::string& name) {
-    std::string result;
-    for (const char c : name) {
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
-    }
-    return "\"" + result + "\"";
-}
 
 std::string number(double x) {
     std::array<char, 40> text{};

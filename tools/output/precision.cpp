@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include <vtkCellArray.h>
-#include <vtkCellArrayIterator.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
 
 #include <nestgrid/detail/geometry.hpp>
+
+#include "output/cells.hpp"
 
 namespace {
 
@@ -62,18 +62,15 @@ double moved_by_single(const Points& points) {
 template <class Function>
 bool for_edges(const Points& points, vtkCellArray* cells, bool rings, const Function& function) {
     using nestgrid::operator-;
-    vtkIdType count = 0;
-    const vtkIdType* corners = nullptr;
-    const auto cell = vtkSmartPointer<vtkCellArrayIterator>::Take(cells->NewIterator());
-    for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell()) {
-        cell->GetCurrentCell(count, corners);
-        const vtkIdType edges = rings && count > 2 ? count : count - 1;
-        for (vtkIdType i = 0; i < edges; ++i) {
+    return for_each_cell(cells, [&](auto corners) {
+        const std::size_t count = corners.size();
+        const std::size_t edges = rings && count > 2 ? count : count - 1;
+        for (std::size_t i = 0; i < edges; ++i) {
             const Point along = points[corners[(i + 1) % count]] - points[corners[i]];
             if (!function(nestgrid::norm(along))) return false;
         }
-    }
-    return true;
+        return true;
+    });
 }
 template <class Function>
 bool for_edges(const Points& points, vtkPolyData* surface, const Function& function) {

@@ -8,10 +8,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <span>
 
 #include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
+#include <vtkFloatArray.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
 
@@ -23,13 +24,17 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// Numbers of a row, one behind the other.
-class RowBuffer {
+/// Numbers, one behind the other, which are written many at a time.
+class Rows {
 public:
-    explicit RowBuffer(std::ofstream& file) : file_{file} {}
+    explicit Rows(std::ofstream& file) : file_{file} {}
+    /// Makes room for the numbers that follow.
+    /// \param bytes less than a million
+    void begin(std::size_t bytes) {
+        if (size_ + bytes > bytes_.size()) flush();
+    }
     template <class Number>
     void put(Number number) {
-        if (size_ + sizeof number > bytes_.size()) flush();
         std::memcpy(bytes_.data() + size_, &number, sizeof number);
         size_ += sizeof number;
     }
@@ -42,6 +47,31 @@ private:
     std::ofstream& file_;
     std::vector<char> bytes_ = std::vector<char>(std::size_t{1} << 20U);
     std::size_t size_ = 0;
+};
+
+/// The numbers of an array, copied only where they are neither float nor double.
+class Numbers {
+public:
+    explicit Numbers(vtkDataArray* array) {
+        if (auto* const floats = vtkFloatArray::FastDownCast(array)) {
+            single_ = floats->GetPointer(0);
+            return;
+        }
+        doubles_ = vtkDoubleArray::FastDownCast(array);
+        if (doubles_ == nullptr) {
+            doubles_ = vtkSmartPointer<vtkDoubleArray>::New();
+            doubles_->DeepCopy(array);
+        }
+        double_ = doubles_->GetPointer(0);
+    }
+    double operator[](vtkIdType i) const {
+        return single_ != nullptr ? static_cast<double>(single_[i]) : double_[i];
+    }
+
+private:
+    const float* single_ = nullptr;
+    const double* double_ = nullptr;
+    vtkSmartPointer<vtkDoubleArray> doubles_;
 };
 
 /// What stands at each point beside its place.
@@ -107,41 +137,51 @@ std::string header_of(vtkPolyData* surface, const PointColumns& columns, bool si
     return header + "end_header\n";
 }
 
-void put_points(vtkPolyData* surface, const PointColumns& columns, bool single, RowBuffer& row) {
-    std::array<double, 3> x{};
+void put_points(vtkPolyData* surface, const PointColumns& columns, bool single, Rows& rows) {
+    const Numbers points(surface->GetPoints()->GetData());
+    const bool has_normals = columns.normals != nullptr;
+    const Numbers normals(has_normals ? columns.normals : surface->GetPoints()->GetData());
+    const std::vector<Numbers> values(columns.values.begin(), columns.values.end());
     for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i) {
-        surface->GetPoint(i, x.data());
-        for (const double coordinate : x) {
-            single ? row.put(static_cast<float>(coordinate)) : row.put(coordinate);
+        rows.begin(6 * sizeof(double) + values.size() * sizeof(double));
+        for (vtkIdType d = 3 * i; d < 3 * i + 3; ++d) {
+            single ? rows.put(static_cast<float>(points[d])) : rows.put(points[d]);
         }
-        if (columns.normals != nullptr) {
-            columns.normals->GetTuple(i, x.data());
-            for (const double coordinate : x) row.put(static_cast<float>(coordinate));
+        for (vtkIdType d = 3 * i; has_normals && d < 3 * i + 3; ++d) {
+            rows.put(static_cast<float>(normals[d]));
         }
-        for (vtkDataArray* const array : columns.values) row.put(array->GetComponent(i, 0));
+        for (const Numbers& value : values) rows.put(value[i]);
     }
+}
+
+void put_cells(vtkPolyData* surface, Rows& rows) {
+    for_each_cell(surface->GetPolys(), [&](auto corners) {
+        rows.begin(1 + corners.size() * sizeof(std::int32_t));
+        rows.put(static_cast<std::uint8_t>(corners.size()));
+        for (const auto corner : corners) rows.put(static_cast<std::int32_t>(corner));
+        return true;
+    });
+    for_each_cell(surface->GetLines(), [&](auto line) {
+        for (std::size_t i = 1; i < line.size(); ++i) {
+            rows.begin(2 * sizeof(std::int32_t));
+            rows.put(static_cast<std::int32_t>(line[i - 1]));
+            rows.put(static_cast<std::int32_t>(line[i]));
+        }
+        return true;
+    });
 }
 
 std::string write_ply(vtkPolyData* surface, const std::filesystem::path& path,
                       const SurfaceEncoding& encoding) {
+    errno = 0;
     std::ofstream file(path, std::ios::binary);
     const bool single = !encoding.doubles && single_keeps_edges(surface);
     const PointColumns columns = columns_of(surface);
     file << header_of(surface, columns, single);
-    RowBuffer row(file);
-    put_points(surface, columns, single, row);
-    for_each_cell(surface->GetPolys(), [&](std::span<const vtkIdType> corners) {
-        row.put(static_cast<std::uint8_t>(corners.size()));
-        for (const vtkIdType corner : corners) row.put(static_cast<std::int32_t>(corner));
-    });
-    for_each_cell(surface->GetLines(), [&](std::span<const vtkIdType> line) {
-        for (std::size_t i = 1; i < line.size(); ++i) {
-            row.put(static_cast<std::int32_t>(line[i - 1]));
-            row.put(static_cast<std::int32_t>(line[i]));
-        }
-    });
-    row.flush();
-    errno = 0;
+    Rows rows(file);
+    put_points(surface, columns, single, rows);
+    put_cells(surface, rows);
+    rows.flush();
     file.close();
     return file ? "" : std::strerror(errno == 0 ? EIO : errno);
 }
