@@ -36,9 +36,9 @@ void PieceWalk::count_only(std::uint64_t most) {
 
 void PieceWalk::report(DiscontinuousSurface& result) {
     result.counts = counts_;
-    result.counts.extracted = surface_.extracted();
+    result.counts.extracted = surface_.report().extracted;
     result.range_bound = greatest_difference({range_.least(), range_.greatest()}, range_);
-    result.error_bound = std::min(surface_.error_bound(), result.range_bound);
+    result.error_bound = std::min(surface_.report().error_bound, result.range_bound);
     result.surface = std::move(part_.surface);
 }
 
@@ -51,7 +51,7 @@ std::unique_ptr<PieceWalk::Base> PieceWalk::begin_part(std::unique_ptr<Base>) {
 
 void PieceWalk::add(Base& part) {
     const auto& drawn = static_cast<const PieceWalk&>(part);
-    surface_.add_report(drawn.surface_);
+    surface_.report().add(drawn.surface_.report());
     tally_.add(drawn.tally_);
     if (surface_.counts_only()) return;
     const Surface<3>& more = drawn.part_.surface;
@@ -109,7 +109,7 @@ void PieceWalk::extract(const View& view) {
         tally_.add(part_.surface.simplices.size());
         return surface_.forget_element();
     }
-    surface_.add_extracted(1);
+    surface_.report().extracted += 1;
     raise_error_bound(view, residual);
 }
 
@@ -120,7 +120,7 @@ void PieceWalk::raise_error_bound(const View& view, double residual) {
         u[k] = values_[k * walk_->components() + pieces_->in_front];
     }
     const Extent corners = Extent::of(std::span(u).first(view.corner_count()));
-    surface_.raise_error_bound(
+    surface_.report().raise_error_bound(
         std::min(deviation_ + residual, greatest_difference(corners, corners, deviation_, range_)));
 }
 

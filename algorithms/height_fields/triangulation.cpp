@@ -76,7 +76,7 @@ auto Triangulation<Real>::begin_part(std::unique_ptr<Base>) -> std::unique_ptr<B
 template <class Real>
 void Triangulation<Real>::add(Base& part) {
     const auto& drawn = static_cast<const Triangulation&>(part);
-    surface_.add_report(drawn.surface_);
+    surface_.report().add(drawn.surface_.report());
     recorded_.append(drawn.recorded_);
     tally_.add(drawn.tally_);
     if (!surface_.counts_only()) surface_.add_part(drawn.part_);
@@ -146,10 +146,11 @@ void Triangulation<Real>::extract(const View& view) {
         tally_.add(surface_.builder().target()->simplices.size());
         return surface_.forget_element();
     }
-    surface_.add_extracted(1);
+    DrawnReport& report = surface_.report();
+    report.extracted += 1;
     const InnerBounds inner = view.inner_bounds();
-    surface_.add_limited(inner.limited ? 1 : 0);
-    surface_.raise_position_bound(static_cast<double>(inner.position_error));
+    report.limited += inner.limited ? 1 : 0;
+    report.raise_position_bound(static_cast<double>(inner.position_error));
     raise_error_bound(view);
 }
 
@@ -158,7 +159,7 @@ void Triangulation<Real>::extract(const View& view) {
 template <class Real>
 void Triangulation<Real>::raise_error_bound(const View& view) {
     const float told = view.is_leaf() ? view.inner_bounds().error : 0;
-    if (told > 0) return surface_.raise_error_bound(static_cast<double>(told));
+    if (told > 0) return surface_.report().raise_error_bound(static_cast<double>(told));
     std::array<double, max_corners> u{};
     for (std::size_t i = 0; i < view.corner_count(); ++i) u[i] = polygon_.u(i);
     const Extent corners = Extent::of(std::span(u).first(view.corner_count()));
@@ -167,17 +168,18 @@ void Triangulation<Real>::raise_error_bound(const View& view) {
     const Bounds& bounds = *graph_.bounds;
     const double off =
         projected_away(view, polygon_.keys(), view.is_leaf() ? 0 : below_, bounds, bounds);
-    surface_.raise_error_bound(
+    surface_.report().raise_error_bound(
         std::min(off + chord, greatest_difference(corners, corners, off, bounds)));
 }
 
 template <class Real>
 void Triangulation<Real>::report(Shading& result) const {
     result.counts = counts_;
-    result.counts.extracted = surface_.extracted();
-    result.counts.limited = surface_.limited();
-    result.error_bound = surface_.error_bound();
-    result.position_bound = surface_.position_bound();
+    const DrawnReport& drawn = surface_.report();
+    result.counts.extracted = drawn.extracted;
+    result.counts.limited = drawn.limited;
+    result.error_bound = drawn.error_bound;
+    result.position_bound = drawn.position_bound;
     result.edge_nodes = recorded_.size();
     result.edge_nodes_bytes = recorded_.memory_bytes();
     result.table_bytes = surface_.memory_bytes();

@@ -167,7 +167,7 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::agree(Ranks& ranks) {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         // What a criterion promises it knows of the nodes of this rank.
-        surfaces_[i].raise_leaf_error(search_->surface_error(search_->levels()[i]));
+        surfaces_[i].report().raise_leaf_error(search_->surface_error(search_->levels()[i]));
         surfaces_[i].agree(ranks);
     }
     Base::agree(ranks);
@@ -212,7 +212,7 @@ template <int dimension, class Real>
 void LevelSet<dimension, Real>::add_part(std::size_t level, const LevelSet& drawn) {
     DrawnSurface<dimension>& surface = surfaces_[level];
     const DrawnSurface<dimension>& more = drawn.surfaces_[level];
-    surface.add_report(more);
+    surface.report().add(more.report());
     std::vector<std::uint32_t> numbers;
     if (!surface.counts_only()) numbers = surface.add_part(drawn.parts_[level], &more);
     if (records_) {
@@ -231,17 +231,18 @@ void LevelSet<dimension, Real>::flush() {
 
 template <int dimension, class Real>
 void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& result) const {
+    const DrawnReport& drawn = surfaces_[i].report();
     result.counts = counts_;
-    result.counts.extracted = surfaces_[i].extracted();
-    result.counts.limited = surfaces_[i].limited();
+    result.counts.extracted = drawn.extracted;
+    result.counts.limited = drawn.limited;
     result.range_bound = range_bound(search_->levels()[i], *search_);
-    const double off_level = surfaces_[i].off_level();
-    result.surface_error = off_level > 0 ? std::numeric_limits<double>::infinity()
-                                         : std::max(surfaces_[i].leaf_error(),
-                                                    search_->surface_error(search_->levels()[i]));
-    result.error_bound = std::min(
-        {surfaces_[i].error_bound() + off_level, result.range_bound, result.surface_error});
-    result.position_bound = surfaces_[i].position_bound();
+    const double off_level = drawn.off_level;
+    result.surface_error =
+        off_level > 0 ? std::numeric_limits<double>::infinity()
+                      : std::max(drawn.leaf_error, search_->surface_error(search_->levels()[i]));
+    result.error_bound =
+        std::min({drawn.error_bound + off_level, result.range_bound, result.surface_error});
+    result.position_bound = drawn.position_bound;
     if (surfaces_[i].builder().target() != nullptr) result.names = surfaces_[i].vertex_names();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
     result.table_bytes = normals_.memory_bytes() + neighbours_.memory_bytes();

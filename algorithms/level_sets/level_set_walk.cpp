@@ -296,17 +296,18 @@ bool LevelSet<dimension, Real>::stops_above_cap(const View& view) {
 /// the sink.
 template <int dimension, class Real>
 NESTGRID_INLINE void LevelSet<dimension, Real>::end_element(DrawnSurface<dimension>& surface) {
-    surface.add_extracted(1);
+    DrawnReport& report = surface.report();
+    report.extracted += 1;
     const InnerBounds inner = at_hand_.cuts.view().inner_bounds();
-    surface.add_limited(inner.limited ? 1 : 0);
-    surface.raise_position_bound(static_cast<double>(inner.position_error));
-    surface.raise_off_level(at_hand_.cuts.off_level());
+    report.limited += inner.limited ? 1 : 0;
+    report.raise_position_bound(static_cast<double>(inner.position_error));
+    report.raise_off_level(at_hand_.cuts.off_level());
     const double bound = error_bound(at_hand_.cuts, *search_, at_hand_.bound);
     const View& view = at_hand_.cuts.view();
-    surface.raise_error_bound(bound);
-    if (view.is_leaf() && view.interpolated == 0) surface.raise_leaf_error(bound);
+    report.raise_error_bound(bound);
+    if (view.is_leaf() && view.interpolated == 0) report.raise_leaf_error(bound);
     if (options_->position_bounds != nullptr) {
-        surface.raise_position_bound(
+        report.raise_position_bound(
             position_bound(at_hand_.cuts, *options_->position_bounds, at_hand_.position_bound));
     }
     if (!surface.counts_only()) surface.builder().flush_if_full();

@@ -153,7 +153,7 @@ private:
         Run run;
         append_contours(run);
         if (run.simplex_count == 0) return;
-        surface_->add_extracted(run.simplex_count - run.quad_count);
+        surface_->report().extracted += run.simplex_count - run.quad_count;
         target_->tally->add(run.simplex_count);
         if (surface_->counts_only()) return;
         if (surface_->builder().takes_batches() && !target_->carries && !target_->at_nodes) {
@@ -213,7 +213,8 @@ private:
             const std::size_t id = entry.id;
             const unsigned meant = parts_meant(id);
             *target_->deepest = std::max(*target_->deepest, level_of(id, entry.contour->depth));
-            if (static_cast<double>(patches_->greatest_bounds[id]) > surface_->error_bound()) {
+            if (static_cast<double>(patches_->greatest_bounds[id]) >
+                surface_->report().error_bound) {
                 raise_error_bound(id, entry.contour->parts & meant);
             }
             entry.first_cut = static_cast<std::uint16_t>(run.cut_count);
@@ -237,7 +238,7 @@ private:
     /// \param parts the drawn parts, one bit at the first end of each
     NESTGRID_NOINLINE void raise_error_bound(std::size_t id, unsigned parts) {
         const auto raise = [&](Real bound) {
-            surface_->raise_error_bound(static_cast<double>(bound));
+            surface_->report().raise_error_bound(static_cast<double>(bound));
         };
         if (!Places::is_patch(id)) return raise(patches_->greatest_bounds[id]);
         for (std::size_t part = 2; part < 2 * pattern_.ends; ++part) {

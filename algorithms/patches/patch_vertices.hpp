@@ -142,7 +142,7 @@ NESTGRID_NOINLINE void PatchDrawing<dimension, Real, Patches>::cut_pieces(
                 const double along = piece.along[0] + fraction * (piece.along[1] - piece.along[0]);
                 const double low_u = static_cast<double>(value[now[i].low]) - level_->value;
                 const double high_u = static_cast<double>(value[now[i].high]) - level_->value;
-                surface_->raise_off_level(low_u + along * (high_u - low_u));
+                surface_->report().raise_off_level(low_u + along * (high_u - low_u));
             }
         }
         cuts = cuts.subspan(now.size());

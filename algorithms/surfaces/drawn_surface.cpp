@@ -41,11 +41,7 @@ void DrawnSurface<dimension>::begin(Builder builder, const VertexNormals& normal
     names_.clear();
     keeps_names_ = false;
     keeps_simplices_ = makes_normals() && builder_.target() == nullptr;
-    extracted_ = limited_ = 0;
-    error_bound_ = 0;
-    off_level_ = 0;
-    leaf_error_ = 0;
-    position_bound_ = 0;
+    report_ = {};
 }
 
 template <int dimension>
@@ -73,9 +69,9 @@ void DrawnSurface<dimension>::name_as_own(Number first, std::size_t count) {
 
 template <int dimension>
 void DrawnSurface<dimension>::agree(Ranks& ranks) {
-    std::array<double*, 3> greatest{&error_bound_, &off_level_, &leaf_error_};
+    std::array<double*, 3> greatest{&report_.error_bound, &report_.off_level, &report_.leaf_error};
     take_greatest(ranks, greatest);
-    std::array<std::uint64_t*, 1> sum{&extracted_};
+    std::array<std::uint64_t*, 1> sum{&report_.extracted};
     take_sums(ranks, sum);
 }
 

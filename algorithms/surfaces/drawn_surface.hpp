@@ -26,6 +26,30 @@ struct VertexNormals {
     bool with_vertices = false;          ///< add_normal() is called for each new vertex
 };
 
+/// Counts and bounds of a surface while it is drawn.
+struct DrawnReport {
+    std::uint64_t extracted = 0;  ///< elements that contribute to the surface
+    std::uint64_t limited = 0;    ///< of these: kept from being divided by a limit
+    double error_bound = 0;       ///< of |U - level| on the surface
+    double off_level = 0;         ///< of |P_S U - level| at the vertices on edges
+    double leaf_error = 0;        ///< of |U - level| in leaves, as flat as without a criterion
+    double position_bound = 0;    ///< of how far vertices are from their true positions
+
+    void raise_error_bound(double bound) { error_bound = std::max(error_bound, bound); }
+    void raise_off_level(double off) { off_level = std::max(off_level, std::abs(off)); }
+    void raise_leaf_error(double bound) { leaf_error = std::max(leaf_error, bound); }
+    void raise_position_bound(double bound) { position_bound = std::max(position_bound, bound); }
+    /// Adds those of a part.
+    void add(const DrawnReport& part) {
+        extracted += part.extracted;
+        limited += part.limited;
+        raise_error_bound(part.error_bound);
+        raise_off_level(part.off_level);
+        raise_leaf_error(part.leaf_error);
+        raise_position_bound(part.position_bound);
+    }
+};
+
 /// Names vertices, numbers those that are new, and hands them and the simplices to a builder. A
 /// vertex with a known name gets the number it has, where the builder shares vertices; else every
 /// vertex is new.
@@ -143,33 +167,9 @@ public:
     }
     const VerticesAtNodes& at_nodes() const { return at_nodes_; }
 
-    /// Counts elements that contribute to the surface.
-    void add_extracted(std::uint64_t more) { extracted_ += more; }
-    std::uint64_t extracted() const { return extracted_; }
-    /// Counts those of them that a limit kept from being divided.
-    void add_limited(std::uint64_t more) { limited_ += more; }
-    std::uint64_t limited() const { return limited_; }
-    /// Raises the bound of |U - level| on the surface to `bound` at least.
-    void raise_error_bound(double bound) { error_bound_ = std::max(error_bound_, bound); }
-    double error_bound() const { return error_bound_; }
-    /// Notes that a vertex on an edge lies where P_S U differs from the level by this.
-    void raise_off_level(double off) { off_level_ = std::max(off_level_, std::abs(off)); }
-    double off_level() const { return off_level_; }
-    /// The same of the parts in leaves, which are as flat as without a criterion.
-    void raise_leaf_error(double bound) { leaf_error_ = std::max(leaf_error_, bound); }
-    double leaf_error() const { return leaf_error_; }
-    void raise_position_bound(double bound) { position_bound_ = std::max(position_bound_, bound); }
-    double position_bound() const { return position_bound_; }
-
-    /// Adds the counts and bounds of a part.
-    void add_report(const DrawnSurface& part) {
-        extracted_ += part.extracted_;
-        limited_ += part.limited_;
-        raise_error_bound(part.error_bound_);
-        raise_off_level(part.off_level_);
-        raise_leaf_error(part.leaf_error_);
-        raise_position_bound(part.position_bound_);
-    }
+    /// Counts and bounds of what was drawn.
+    DrawnReport& report() { return report_; }
+    const DrawnReport& report() const { return report_; }
 
     /// Takes the elements counted and the bounds of all ranks together. Collective.
     void agree(Ranks& ranks);
@@ -228,12 +228,7 @@ private:
     std::vector<bool> is_at_node_;   // by vertex: whether it is among at_nodes_
     std::vector<KeyPair> names_;     // by vertex, where they are kept
     std::deque<Simplex> simplices_;  // all of them, where a sink takes them and normals are wanted
-    std::uint64_t extracted_ = 0;
-    std::uint64_t limited_ = 0;
-    double error_bound_ = 0;
-    double off_level_ = 0;
-    double leaf_error_ = 0;
-    double position_bound_ = 0;
+    DrawnReport report_;
     int rank_ = 0;
     bool keeps_names_ = false;
     bool keeps_simplices_ = false;

@@ -11,6 +11,13 @@ namespace nestgrid::engine {
 template <class Real>
 class WalkStack;
 
+/// What a walk carries of the nodes of an element's father.
+struct FatherNodes {
+    const NodeKey* key;     ///< where the walk carries keys
+    const Point* position;  ///< where it carries positions
+    const Point* placed;    ///< where the grid has the nodes, where the walk carries this
+};
+
 /// An element on the way down. A view is valid while the walk is at the element or below it.
 template <class Real>
 struct ElementView {
@@ -23,12 +30,10 @@ struct ElementView {
     const Child* as;            ///< the element in that rule; null for a coarse element
     /// P_S U at the corners: component c of corner k at value[k * components + c].
     const Real* value;
-    const NodeKey* node_key;     ///< keys of the father's nodes, where the walk carries keys
-    const Point* node_position;  ///< their positions, where it carries positions
-    const Point* node_placed;    ///< where the grid has these nodes, where the walk carries this
-    NodeKey path;                ///< a hash of the way down
-    ClosedParts<Real> closed;    ///< edges and faces around the element that are closed
-    int level;                   ///< 0 for coarse elements
+    FatherNodes nodes;
+    NodeKey path;              ///< a hash of the way down
+    ClosedParts<Real> closed;  ///< edges and faces around the element that are closed
+    int level;                 ///< 0 for coarse elements
     Shape shape;
     std::int8_t orientation;
     std::uint8_t child;         ///< number of the element in the father's rule

@@ -139,9 +139,9 @@ bool Walk<Real>::make_coarse(std::size_t i, Stack& stack, View& view) const {
     view.made_by = nullptr;
     view.as = nullptr;
     view.value = stack.value.data();
-    view.node_key = stack.key.data();
-    view.node_position = coarse.corners.data();
-    view.node_placed = coarse.corners.data();
+    view.nodes.key = stack.key.data();
+    view.nodes.position = coarse.corners.data();
+    view.nodes.placed = coarse.corners.data();
     view.path = detail::mix(static_cast<NodeKey>(i));
     view.closed.any = view.closed.any_face = false;
     view.level = 0;

@@ -78,7 +78,7 @@ void Walk<Real>::gradients(const View& view, std::span<Point> out) const {
 template <class Real>
 void Walk<Real>::placed_corners(const View& view, Point* out) const {
     for (std::size_t k = 0; k < view.corner_count(); ++k) {
-        out[k] = view.node_placed[view.as == nullptr ? k : std::size_t{view.as->corner[k]}];
+        out[k] = view.nodes.placed[view.as == nullptr ? k : std::size_t{view.as->corner[k]}];
     }
 }
 

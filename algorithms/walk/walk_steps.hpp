@@ -120,10 +120,10 @@ NESTGRID_INLINE void Walk<Real>::corners(const View& view, NodeKey* keys, Point*
         return view.as == nullptr ? k : std::size_t{view.as->corner[k]};
     };
     for (std::size_t k = 0; keys != own_keys && k < corners; ++k) {
-        keys[k] = view.node_key[node(k)];
+        keys[k] = view.nodes.key[node(k)];
     }
     for (std::size_t k = 0; positions != own_positions && k < corners; ++k) {
-        positions[k] = view.node_position[node(k)];
+        positions[k] = view.nodes.position[node(k)];
     }
 }
 
@@ -170,7 +170,7 @@ NESTGRID_INLINE void Walk<Real>::project_positions(const View& view, const Split
     const std::size_t count = rule.new_nodes.size();
     Point* const x = with_room(frame.position, corners + count);
     for (std::size_t k = 0; k < corners; ++k) {
-        x[k] = view.node_position[view.as == nullptr ? k : view.as->corner[k]];
+        x[k] = view.nodes.position[view.as == nullptr ? k : view.as->corner[k]];
     }
     NodeMask given = 0;
     if (new_positions_) {
@@ -235,9 +235,9 @@ NESTGRID_INLINE auto Walk<Real>::make_child(const View& father, const Rule& rule
     child.father = &father;
     child.made_by = &rule;
     child.value = frame.child_value.data();
-    child.node_key = frame.key.data();
-    child.node_position = frame.position.data();
-    child.node_placed = frame.placed.data();
+    child.nodes.key = frame.key.data();
+    child.nodes.position = frame.position.data();
+    child.nodes.placed = frame.placed.data();
     child.closed.any = child.closed.any_face = false;
     child.level = father.level + 1;
     child.boundary = 0;
