@@ -107,7 +107,7 @@ double HighOrder::position_jump() const {
     return data_->places ? data_->places->records.jump() : 0;
 }
 
-double HighOrder::least_tolerance() const {
+double HighOrder::least_tolerance(double position_tolerance) const {
     // A half of a part has a quarter of its beta.
     const auto at_limit = [](const engine::LeafRecords& records) {
         double beta = 0;
@@ -118,7 +118,7 @@ double HighOrder::least_tolerance() const {
     };
     const engine::LeafRecords& records = data_->field.records;
     double least = std::max(at_limit(records), 2e-12 * records.magnitude());
-    if (data_->places) {
+    if (data_->places && position_tolerance == 0) {
         // Positions are within the same share of the domain.
         const double of_domain = data_->default_position_tolerance(1);
         least = std::max(least, at_limit(data_->places->records) / of_domain);

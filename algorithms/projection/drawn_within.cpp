@@ -92,7 +92,8 @@ TriangleBudget find_tolerance(const HighOrder& data, const Projection& projectio
     const auto at = [&](double tolerance, std::uint64_t most) {
         return count(polynomials_at(data, projection, tolerance), most);
     };
-    return least_threshold(at, range_of(data), projection.max_triangles, data.least_tolerance());
+    return least_threshold(at, range_of(data), projection.max_triangles,
+                           data.least_tolerance(projection.position_error));
 }
 
 }  // namespace nestgrid::engine

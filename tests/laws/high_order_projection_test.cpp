@@ -123,6 +123,26 @@ TEST(HighOrderBudgets, EndAtTheLeastToleranceThatIsTried) {
     EXPECT_EQ(asked.indicator, "error");
 }
 
+/// Where positions have an error of their own, they do not end a search: data that are nearly
+/// linear in leaves that are strongly curved go on below the tolerance at which both would be as
+/// fine.
+TEST(HighOrderBudgets, GoOnWherePositionsHaveAnErrorOfTheirOwn) {
+    const DrawnWorld<CurvedWorld<DegreeWorld<2>>, DegreeField<2>> drawn(
+        polynomial_bend(3, 0.1, 2), WorldOptions{.least_degree = 2, .greatest_degree = 2},
+        [](const Point& x) { return x[0] + 0.3 * x[1] + 1e-4 * x[0] * x[0]; });
+    const Prerolls prerolls(drawn.world, drawn.field);
+    const double with_positions = drawn.data.least_tolerance();
+    const double alone = drawn.data.least_tolerance(0.01);
+    EXPECT_LT(alone, with_positions / 8);
+    const auto lines = [&](const Projection& how) { return isosurface<2>(prerolls, 0.1, how); };
+    const std::uint64_t most =
+        lines({.threshold = with_positions / 4, .indicator = "error", .position_error = 0.01})
+            .surface.simplices.size();
+    const auto found = lines({.max_triangles = most, .indicator = "error", .position_error = 0.01});
+    EXPECT_LE(found.surface.simplices.size(), most);
+    EXPECT_LE(found.search.threshold, with_positions / 4 * (1 + 1e-2));
+}
+
 TEST(HighOrderBudgets, EndWhereProgressSaysSo) {
     const OnBoxes<3> drawn(hanging_world(1), gyroid);
     const Prerolls prerolls(drawn.world, drawn.field);

@@ -62,6 +62,7 @@ void write_solution(const std::string& name, int dimension, int p, bool curved) 
     };
     nestgrid_test::add_values(*cells, "u", bump);
     nestgrid_test::add_values(*cells, "radius", [](const Point& x) { return nestgrid::norm(x); });
+    if (curved) nestgrid_test::add_values(*cells, "stress", bump);
     const vtkNew<vtkXMLUnstructuredGridWriter> writer;
     writer->SetInputData(cells);
     writer->SetFileName(name.c_str());

@@ -154,7 +154,6 @@ refused 1 'no collapse of edges' isosurface solution.vtu --field u --value 0.3 -
 refused 1 '0 < finest <= coarsest' isosurface solution.vtu --field u --value 0.3 --lens ball:0.5,0.5,0.5,0.1 -o x.vtp
 refused 1 'are for fields of degree 1' isosurface solution.vtu --field u --value 0.3 --error 0.1 --measure -o x.vtp
 refused 1 "below 1e-12 of the range" isosurface solution.vtu --field u --value 0.3 --error 1e-15 -o x.vtp
-refused 1 "no frame of several" isosurface solution.vtu solution.vtu --field u --value 0.3 --frames 2 -o x.vtp
 refused 1 "magnitude is for" isosurface solution.vtu --field u --value 0.3 --magnitude
 refused 1 "has 1 components, and none with number 2" isosurface solution.vtu --field u --component 2 --value 0.3
 head -c 3000 solution.vtu >cut.vtu
@@ -189,6 +188,82 @@ six='0 0 0 1 0 0 0 1 0 0.5 0 0 0.5 0.5 0 0 0.5 0'
 mesh triangle.vtu "$six" 22 '0 1 2 1 1 1' '0 1 2 3 4 5' 6
 run isosurface triangle.vtu --value 0.5 --error 1e-3
 [ "$(value segments)" -gt 1 ] || fail "a quadratic triangle: $(value segments) segments"
+# Faces, edges and points beside cells are left out, as mesh generators write them; so are ghosts.
+mesh beside.vtu "$six" '1 3 22 0' '0 1 2 1 1 1' '0 0 1 0 1 2 3 4 5' '1 3 9 9'
+run isosurface triangle.vtu --value 0.5 --error 1e-3 -o alone.vtp
+run isosurface beside.vtu --value 0.5 --error 1e-3 -o beside.vtp
+cmp -s alone.vtp beside.vtp || fail "cells of lower dimensions change what is drawn"
+grep -q '^3 cells are left out, of a dimension below 2 or ghosts$' out || fail "left out: $(cat out)"
+mesh points.vtu "$six" '1 3' '0 1 2 1 1 1' '0 0 1' '1 3'
+refused 1 "'points.vtu': there are no cells of dimension 2" isosurface points.vtu --value 0.5
+mesh ghost.vtu "0 0 0 1 0 0 1 1 0 0 1 0 2 0 0 2 1 0" '9 9' '0 1 1.5 1 2 2' '0 1 2 3 1 4 5 2' '4 8'
+sed -i 's|</Cells>|</Cells><CellData><DataArray type="UInt8" Name="vtkGhostType" format="ascii">0 1</DataArray></CellData>|' ghost.vtu
+run info ghost.vtu
+[ "$(value leaf_elements)" = 1 ] || fail "a ghost is drawn: $(cat out)"
+
+# Frames: several files, or a list of them; between them the mean is drawn.
+mesh later.vtu "$six" 22 '2 1 0 2 1 3' '0 1 2 3 4 5' 6
+mesh mean.vtu "$six" 22 '1 1 1 1.5 1 2' '0 1 2 3 4 5' 6
+run isosurface mean.vtu --value 1.2 --error 1e-3 -o mean.vtp
+[ "$(value segments)" -gt 1 ] || fail "a mean without a line: $(cat out)"
+run isosurface triangle.vtu later.vtu --time 0.5 --value 1.2 --error 1e-3 -o between.vtp
+cmp -s mean.vtp between.vtp || fail "between two frames another line than that of their mean"
+pvd() {
+    echo '<VTKFile type="Collection" version="0.1"><Collection>'
+    while [ $# -gt 0 ]; do
+        echo "<DataSet timestep='$1' part='0' file='$2'/>"
+        shift 2
+    done
+    echo '</Collection></VTKFile>'
+}
+pvd 2 triangle.vtu 4 later.vtu >run.pvd
+run isosurface run.pvd --time 3 --value 1.2 --error 1e-3 -o listed.vtp
+cmp -s mean.vtp listed.vtp || fail "a list of frames draws another line"
+run isosurface run.pvd --value 1.2 --frames 3 --error 1% -o film.vtp
+[ "$(grep -c DataSet film.pvd)" = 3 ] || fail "a film of a list: $(cat film.pvd)"
+run info run.pvd
+[ "$(value frames)" = 2 ] && [ "$(value last_time)" = 4 ] || fail "info of a list: $(cat out)"
+# at NAME TIME FILE: the file, with its time in an array that is called so.
+at() {
+    sed "s|<Piece|<FieldData><DataArray type=\"Float64\" Name=\"$1\" NumberOfTuples=\"1\" format=\"ascii\">$2</DataArray></FieldData>&|" "$3"
+}
+at TimeValue 2 triangle.vtu >at2.vtu
+at TIME 4 later.vtu >at4.vtu
+run isosurface at2.vtu at4.vtu --time 3 --value 1.2 --error 1e-3 -o told.vtp
+cmp -s mean.vtp told.vtp || fail "files that tell their times draw another line"
+refused 1 "'good.vtu' has another grid than 'triangle.vtu'" isosurface triangle.vtu good.vtu --time 0.5 --value 1 -o x.vtp
+pvd 2 triangle.vtu 2 later.vtu >twice.pvd
+refused 1 "'twice.pvd' lists 'later.vtu' at no later time" isosurface twice.pvd --time 2 --value 1 -o x.vtp
+pvd >none.pvd
+refused 1 "'none.pvd' lists no files" isosurface none.pvd --value 1
+pvd 1 lost.vtu >lost.pvd
+refused 1 "'lost.vtu' does not exist" isosurface lost.pvd --value 1
+refused 1 "'run.pvd' lists frames of its own" isosurface run.pvd run.pvd --time 1 --value 1 -o x.vtp
+
+# Files of several processes are one mesh.
+mesh left.vtu "$square" 9 '0 1 2 1' '0 1 2 3' 4
+mesh right.vtu "1 0 0 2 0 0 2 1 0 1 1 0" 9 '1 2 2 2' '0 1 2 3' 4
+cat >both.pvtu <<END
+<VTKFile type="PUnstructuredGrid" version="0.1" byte_order="LittleEndian"><PUnstructuredGrid GhostLevel="0">
+<PPoints><PDataArray type="Float64" NumberOfComponents="3"/></PPoints>
+<PPointData><PDataArray type="Float64" Name="u"/></PPointData>
+<Piece Source="left.vtu"/><Piece Source="right.vtu"/></PUnstructuredGrid></VTKFile>
+END
+run info both.pvtu
+[ "$(value leaf_elements)" = 2 ] && [ "$(value nodes)" = 6 ] || fail "pieces: $(cat out)"
+run isosurface both.pvtu --value 0.5
+sed 's/right.vtu/gone.vtu/' both.pvtu >gone.pvtu
+refused 1 "'gone.vtu' does not exist" isosurface gone.pvtu --value 0.5
+
+# Another field of the file colours a surface.
+run isolines solution.vtu --array u --on-surface 0.3 --by radius --values 0.8,1 --error 0.01 -o by.vtp
+by_field=$(value length)
+run isolines solution.vtu --array u --on-surface 0.3 --by 'sqrt(x^2+y^2+z^2)' --values 0.8,1 --error 0.01 -o by.vtp
+[ "$(wc -w <<<"$by_field")" = 2 ] || fail "lines by another field: $(cat out)"
+awk -v a="$by_field" -v b="$(value length)" 'BEGIN { n = split(a, x); split(b, y)
+    for (i = 1; i <= n; ++i) if ((x[i] - y[i]) ^ 2 > 1e-4 * y[i] ^ 2 || x[i] == 0) exit 1 }' ||
+    fail "lines by a field are $by_field long, those by its formula $(value length)"
+
 mesh nan.vtu "$square" 9 '0 1 nan 1' '0 1 2 3' 4
 refused 1 "'nan.vtu': 'u' is not a finite number at point 2" isosurface nan.vtu --value 0.5
 mesh flat.vtu '0 0 0 1 0 0 2 0 0 3 0 0' 9 '0 1 2 1' '0 1 3 2' 4

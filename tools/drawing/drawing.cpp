@@ -222,7 +222,8 @@ private:
                     within.threshold = error;
                     return count(within, most);
                 },
-                nestgrid::default_error(*data), max_triangles, data->least_tolerance());
+                nestgrid::default_error(*data), max_triangles,
+                data->least_tolerance(within.position_error));
         }
         const nestgrid::Criteria& criteria = moment_.criteria();
         const nestgrid::Bounds& bounds = criteria.bounds();

@@ -51,22 +51,13 @@ const std::array<double, 2>& Moments::range() const {
     if (!range_) {
         const Meter meter;
         // What is drawn by its polynomials needs them alone.
-        const bool has_degree = field_.frames.count() == 1 &&
-                                field_.frames[0]->high_order({.executor = executor_}) != nullptr;
-        range_ = has_degree ? range_of_values()
+        const bool has_degree =
+            field_.range && field_.frames[0]->high_order({.executor = executor_}) != nullptr;
+        range_ = has_degree ? *field_.range
                             : field_.frames.prepare(projection_, {.executor = executor_});
         cost_ = {meter.seconds(), meter.peak_bytes(), field_.frames.memory_bytes()};
     }
     return *range_;
-}
-
-std::array<double, 2> Moments::range_of_values() const {
-    std::array<double, 2> range{field_.value(0), field_.value(0)};
-    for (std::size_t i = 1; i < field_.value_count; ++i) {
-        range[0] = std::min(range[0], field_.value(i));
-        range[1] = std::max(range[1], field_.value(i));
-    }
-    return range;
 }
 
 void Moments::for_each(const std::function<void(const Moment&)>& function) const {

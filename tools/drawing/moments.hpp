@@ -83,8 +83,6 @@ public:
 private:
     friend class Moment;
 
-    std::array<double, 2> range_of_values() const;
-
     const InputField& field_;
     const TimeOptions& time_;
     nestgrid::Projection projection_;

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
+#include <vector>
 
 #include <nestgrid/grid.hpp>
 #include <nestgrid/shape.hpp>
@@ -12,6 +14,11 @@ template <class Field>
 concept HasGradients = requires(const Field& field, const typename Field::Element& e,
                                 std::span<nestgrid::Point> out) {
     field.corner_gradients(e, out);
+};
+
+template <class Field>
+concept HasDegree = requires(const Field& field, const typename Field::Element& e) {
+    field.degree(e);
 };
 
 /// Two fields of one component each, on one grid, as the components of one field.
@@ -50,6 +57,19 @@ public:
     void corner_gradients(const Element& e,
                           std::span<nestgrid::Point> out) const requires HasGradients<Field> {
         fields_[0].corner_gradients(e, out);
+    }
+
+    /// Of two fields of polynomials.
+    int degree(const Element& leaf) const requires HasDegree<Field> {
+        return std::max(fields_[0].degree(leaf), fields_[1].degree(leaf));
+    }
+    void evaluate(const Element& leaf, std::span<const nestgrid::Point> reference,
+                  std::span<value_type> out) const requires HasDegree<Field> {
+        std::vector<value_type> values(reference.size());
+        for (std::size_t c = 0; c < components; ++c) {
+            fields_[c].evaluate(leaf, reference, values);
+            for (std::size_t i = 0; i < values.size(); ++i) out[i * components + c] = values[i];
+        }
     }
 
 private:

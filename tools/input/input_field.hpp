@@ -17,6 +17,8 @@ struct InputField : FrameField {
     /// The values of the first frame, in any order; some may be there more than once.
     std::size_t value_count = 0;
     std::function<double(std::size_t)> value{};
+    /// Of the values of all frames, where nodes of elements do not have them all.
+    std::optional<std::array<double, 2>> range{};
     std::optional<nestgrid::LatticeGeometry<3>> geometry{};  ///< of volumes
     std::shared_ptr<const std::vector<Volume>>
         volumes{};               ///< the files of volumes; null for others

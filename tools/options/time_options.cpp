@@ -92,6 +92,8 @@ void check(const TimeOptions& time) {
     }
     if (time.more.empty()) return;
     require_several_frames(time, time.more.size() + 1);
+    // Files may tell other times than 0, 1, 2, ...: require_frames() has them.
+    if (time.times.empty()) return;
     check_times(time, times_of_frames(time.times, times_of_files(time.more.size() + 1)));
 }
 

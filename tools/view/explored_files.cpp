@@ -36,12 +36,6 @@ ExploredField read_explored(Input& input, const Paths& more, const std::vector<d
         throw InvalidInput("'" + path.string() +
                            "' has 2 dimensions; only fields in space can be explored");
     }
-    const bool has_degree =
-        read.first().visit([](const auto& first) { return first.offers(Feature::degree); });
-    if (has_degree) {
-        throw InvalidInput("'" + path.string() +
-                           "' has cells of degree 2 or more, which the page does not explore yet");
-    }
     ExploredField f;
     static_cast<FrameField&>(f) = read;
     f.box = read.geometry ? box_of(*read.geometry)
@@ -53,6 +47,7 @@ ExploredField read_explored(Input& input, const Paths& more, const std::vector<d
                                               : stem_of(path);
     } else {
         describe_values(f, read.value_count, read.value);
+        f.range = read.range;
     }
     f.length_unit = read.length_unit;
     f.note = read.note;

@@ -73,6 +73,10 @@ Explorer::Explorer(ExploredField field, const Executor& executor)
     least_ = least;
     greatest_ = greatest;
     nodes_ = field_.frames[0]->node_count({.executor = executor});
+    if (const auto polynomials = field_.frames[0]->high_order({.executor = executor})) {
+        // Curved cells of degree 1 are drawn as polynomials, too.
+        degree_ = std::max({2, polynomials->greatest_degree(), polynomials->geometry_degree()});
+    }
     if (field_.range) {
         least_ = (*field_.range)[0];
         greatest_ = (*field_.range)[1];
@@ -103,7 +107,7 @@ std::string Explorer::info() const {
         .number(static_cast<double>(field_.samples))
         .key("nodes")
         .number(static_cast<double>(nodes_));
-    text.key("preroll_seconds").number(preroll_seconds_);
+    text.key("degree").number(degree_).key("preroll_seconds").number(preroll_seconds_);
     return text.close('}').text();
 }
 
@@ -123,6 +127,7 @@ Prerolls& Explorer::moment_at(const FrameRequest& request) {
 
 FrameCriteria Explorer::criteria_for(const FrameRequest& request, Prerolls& moment,
                                      const Work& work, WatchedSteps& steps) const {
+    if (degree_ > 1) return polynomials_for(request, moment, work, steps);
     const std::vector<double> isovalues(request.isovalue ? 1 : 0, request.isovalue.value_or(0));
     Projection projection{.indicator = request.indicator, .lens = request.lens};
     if (!keeps_surface(request)) {
@@ -143,6 +148,20 @@ FrameCriteria Explorer::criteria_for(const FrameRequest& request, Prerolls& mome
     steps.begin("Measuring errors of the surface");
     projection.indicator = request.distance > 0 ? "slope" : "error";
     criteria.detail = Criteria(moment, projection, isovalues, work);
+    return criteria;
+}
+
+/// What polynomials are drawn with: within an error, whatever the threshold is called.
+FrameCriteria Explorer::polynomials_for(const FrameRequest& request, Prerolls& moment,
+                                        const Work& work, WatchedSteps& steps) {
+    if (request.distance > 0 || request.collapse) {
+        throw InvalidInput(
+            "data of higher degree are drawn within an error or a number of triangles: without a "
+            "distance, and without a collapse");
+    }
+    steps.begin("Looking at polynomials");
+    FrameCriteria criteria;
+    criteria.polynomials = moment.high_order(work);
     return criteria;
 }
 
@@ -219,7 +238,10 @@ FrameRequest Explorer::at_last_detail(FrameRequest request) const {
 }
 
 std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& watch) {
-    const FrameRequest request = at_last_detail(parse_request(text));
+    FrameRequest request = at_last_detail(parse_request(text));
+    if (degree_ > 1 && request.lens && request.lens->finest == 0) {  // leaves have no finest level
+        request.lens->finest = norm(field_.box[1] - field_.box[0]) / 400;
+    }
     const auto start = Clock::now();
     WatchedSteps steps(watch);
     const WatchedWork work(*executor_, steps);

@@ -48,7 +48,7 @@ public:
     /// of nearly all values (the same unless few lie far off), box,
     /// indicators (a name and what it measures), unit of length (empty where it is not known),
     /// times, a histogram, an isovalue to begin with, samples (0 where the field has none), nodes,
-    /// and seconds of the preroll.
+    /// degree (above 1 where polynomials are drawn within errors), and seconds of the preroll.
     std::string info() const;
 
     /// Draws a frame.
@@ -76,6 +76,8 @@ private:
     Prerolls& moment_at(const FrameRequest& request);
     FrameCriteria criteria_for(const FrameRequest& request, Prerolls& moment, const Work& work,
                                WatchedSteps& steps) const;
+    static FrameCriteria polynomials_for(const FrameRequest& request, Prerolls& moment,
+                                         const Work& work, WatchedSteps& steps);
     double greatest_threshold(const IndicatorKind& indicator) const;
     Drawn draw(const FrameRequest& request, const FrameDrawing& drawing);
     Drawn draw_to_goal(const FrameRequest& request, const FrameDrawing& drawing);
@@ -83,7 +85,8 @@ private:
     ExploredField field_;
     const Executor* executor_;
     std::size_t nodes_ = 0;  // of a frame
-    double least_ = 0;       // of all frames
+    int degree_ = 1;
+    double least_ = 0;  // of all frames
     double greatest_ = 0;
     std::array<double, 2> usual_range_{};  // of the values, or of nearly all
     double preroll_seconds_ = 0;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame_drawing.hpp"
 
+#include <algorithm>
+
 #include <nestgrid/algorithms/collapse.hpp>
 #include <nestgrid/algorithms/slices.hpp>
 
@@ -21,16 +23,34 @@ FrameDrawing::FrameDrawing(const FrameRequest& request, const FieldOnGrid& field
     if (request.plane) plane_.emplace(request.plane->through, request.plane->normal);
 }
 
+/// Calls function(hierarchy, what stops there) for what is drawn at a threshold.
+template <class Function>
+auto FrameDrawing::with(double threshold, const Function& function) const {
+    if (criteria_.polynomials == nullptr) {
+        const AnyCriterion criterion = criteria_.detail->at(threshold);
+        return field_.visit([&](const auto& hierarchy) {
+            return function(hierarchy, StoppedBy{criterion, *criteria_.bounds});
+        });
+    }
+    const HighOrder& data = *criteria_.polynomials;
+    const VirtualRefinement fine(
+        data, {.tolerance = std::max(threshold, data.least_tolerance()), .lens = request_.lens});
+    const Hierarchy<double>& hierarchy = fine;
+    return function(hierarchy, StoppedBy{fine.criterion(), fine.bounds()});
+}
+
 std::vector<FramePart> FrameDrawing::draw(double threshold) const {
     steps_.begin("Drawing");
     std::vector<FramePart> parts;
-    field_.visit([&](const auto& hierarchy) {
-        if (plane_) {
-            parts.push_back({"slice", draw_slice(hierarchy, criteria_.detail.at(threshold))});
-        }
-        if (!request_.isovalue) return;
-        const double first = request_.collapses() ? collapse_start * threshold : threshold;
-        parts.push_back(draw_isosurface(hierarchy, criteria_.detail.at(first)));
+    if (plane_) {
+        with(threshold, [&](const auto& hierarchy, const StoppedBy& by) {
+            parts.push_back({"slice", draw_slice(hierarchy, by)});
+        });
+    }
+    if (!request_.isovalue) return parts;
+    const double first = request_.collapses() ? collapse_start * threshold : threshold;
+    with(first, [&](const auto& hierarchy, const StoppedBy& by) {
+        parts.push_back(draw_isosurface(hierarchy, by));
         if (request_.collapses()) collapse_edges(parts.back(), hierarchy);
     });
     return parts;
@@ -38,20 +58,19 @@ std::vector<FramePart> FrameDrawing::draw(double threshold) const {
 
 bool FrameDrawing::fits(double threshold) const {
     steps_.begin("Searching for the detail that keeps within the triangles");
-    const AnyCriterion criterion = criteria_.detail.at(threshold);
     bool waits = true;
     IsosurfaceOptions options;
     options.progress = [&](const TraversalCounts&) { return waits = steps_.tell(); };
-    const bool fit = field_.visit([&](const auto& hierarchy) {
+    const bool fit = with(threshold, [&](const auto& hierarchy, const StoppedBy& by) {
         std::uint64_t most = request_.triangles;
         if (plane_) {  // merged at nodes, it has fewer triangles than are counted
-            const std::size_t used = draw_slice(hierarchy, criterion).surface.simplices.size();
+            const std::size_t used = draw_slice(hierarchy, by).surface.simplices.size();
             if (used > most) return false;
             most -= used;
         }
         if (!request_.isovalue) return true;
         return count_triangles(hierarchy, {{}, {*request_.isovalue}},
-                               under(criterion, *criteria_.bounds), most, options, {executor_})
+                               under(by.criterion, by.bounds), most, options, {executor_})
             .has_value();
     });
     if (!waits) throw FrameAbandoned{};
@@ -60,19 +79,19 @@ bool FrameDrawing::fits(double threshold) const {
 
 template <class Real>
 FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
-                                        const Criterion& criterion) const {
+                                        const StoppedBy& by) const {
     const bool normals = request_.normals != NormalType::none;
     const bool quickly = request_.moving || request_.collapses();
     IsosurfaceOptions options = watched({.elements = request_.outlines});
     options.normals = normals && !quickly;
     // Linear cuts keep an error.
-    const bool keeps = request_.error > 0 || request_.indicator == "deviation";
+    const bool keeps =
+        request_.error > 0 || request_.indicator == "deviation" || criteria_.polynomials != nullptr;
     options.cuts = keeps ? Cuts::linear : Cuts::finest;
-    const DroppedNodes dropped(criterion, criteria_.slopes.get());
-    const Criterion& asked = criteria_.slopes == nullptr ? criterion : dropped;
-    FramePart part{"isosurface",
-                   isosurface<3>(hierarchy, *request_.isovalue, under(asked, *criteria_.bounds),
-                                 options, {executor_})};
+    const DroppedNodes dropped(by.criterion, criteria_.slopes.get());
+    const Criterion& asked = criteria_.slopes == nullptr ? by.criterion : dropped;
+    FramePart part{"isosurface", isosurface<3>(hierarchy, *request_.isovalue,
+                                               under(asked, by.bounds), options, {executor_})};
     if (part.drawn.cancelled) throw FrameAbandoned{};
     if (criteria_.slopes != nullptr && !request_.collapses()) part.distance = dropped.greatest();
     if (normals && quickly) {
@@ -92,8 +111,8 @@ void FrameDrawing::collapse_edges(FramePart& part, const Hierarchy<Real>& hierar
 }
 
 template <class Real>
-Slice FrameDrawing::draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const {
-    Slice drawn = slice(hierarchy, *plane_, under(criterion, *criteria_.bounds),
+Slice FrameDrawing::draw_slice(const Hierarchy<Real>& hierarchy, const StoppedBy& by) const {
+    Slice drawn = slice(hierarchy, *plane_, under(by.criterion, by.bounds),
                         watched({.elements = request_.outlines}), {executor_});
     if (drawn.cancelled) throw FrameAbandoned{};
     return drawn;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <nestgrid/algorithms/criteria.hpp>
+#include <nestgrid/algorithms/high_order.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 
@@ -28,8 +29,10 @@ struct FramePart {
 
 /// What a request is drawn with.
 struct FrameCriteria {
-    Criteria detail;
-    std::shared_ptr<const Bounds> bounds;
+    std::optional<Criteria> detail{};
+    std::shared_ptr<const Bounds> bounds{};
+    /// In the place of both: polynomials, of which each threshold is an error (high_order.hpp).
+    std::shared_ptr<const HighOrder> polynomials{};
     /// Slope deviations, for FramePart::distance; or null.
     std::shared_ptr<const Indicator> slopes{};
 };
@@ -47,12 +50,19 @@ public:
     bool fits(double threshold) const;
 
 private:
+    struct StoppedBy {
+        const Criterion& criterion;
+        const Bounds& bounds;
+    };
+
+    template <class Function>
+    auto with(double threshold, const Function& function) const;
     template <class Real>
-    FramePart draw_isosurface(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const;
+    FramePart draw_isosurface(const Hierarchy<Real>& hierarchy, const StoppedBy& by) const;
     template <class Real>
     void collapse_edges(FramePart& part, const Hierarchy<Real>& hierarchy) const;
     template <class Real>
-    Slice draw_slice(const Hierarchy<Real>& hierarchy, const Criterion& criterion) const;
+    Slice draw_slice(const Hierarchy<Real>& hierarchy, const StoppedBy& by) const;
     IsosurfaceOptions watched(IsosurfaceOptions options) const;
 
     const FrameRequest& request_;

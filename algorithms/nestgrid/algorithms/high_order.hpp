@@ -41,7 +41,9 @@ public:
     /// The tolerance at which the most curved leaf is flat at the depth limit, if it is halved as
     /// often as VirtualOptions::depth is by default. Below it more and more elements meet the
     /// limit; budgets of triangles end there.
-    double least_tolerance() const;
+    /// \param position_tolerance that of VirtualOptions: where it is not 0, positions are within it
+    ///        at any tolerance, and do not count
+    double least_tolerance(double position_tolerance = 0) const;
     std::size_t memory_bytes() const;
 
 private:

@@ -15,6 +15,7 @@
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
+#include "degree_world.hpp"
 #include "families.hpp"
 #include "frame_of.hpp"
 #include "refusal.hpp"
@@ -227,6 +228,53 @@ TEST(SettledFrames, AreTheFinestWithinTheTriangles) {
             frame_of(volume.explorer, what + "&threshold=" + text_of(less)).number("triangles"),
             goal)
             << what;
+    }
+}
+
+/// Frames of data of higher degree are surfaces of the polynomials within the error, whatever the
+/// page calls it.
+TEST(Polynomials, AreDrawnWithinErrorsAndNumbersOfTriangles) {
+    const DegreeWorld<3> world(
+        {.levels = 1, .least_degree = 2, .greatest_degree = 4, .seed = 5},
+        [](const Point& x) { return std::sin(3 * x[0]) + std::cos(4 * x[1]) * x[2]; });
+    const DegreeField<3> field(world);
+    const SequentialExecutor executor;
+    const std::shared_ptr<const DegreeWorld<3>> shared(std::shared_ptr<const void>(), &world);
+    ExploredField explored = still_field(shared, field);
+    Explorer explorer(std::move(explored), executor);
+    EXPECT_NE(explorer.info().find("\"degree\":4"), std::string::npos);
+
+    const HighOrder data(world, field);
+    const Plane plane({0.1, 0.2, 0.3}, {1, 0.2, 0.1});
+    const std::string asked = "isovalue=0.1&plane=0.1,0.2,0.3,1,0.2,0.1";
+    for (const double error : {0.3, 0.02}) {
+        const VirtualRefinement fine(data, {.tolerance = error});
+        const Projection within = under(fine.criterion(), fine.bounds());
+        const auto surface = isosurface<3>(fine, 0.1, within);
+        const auto cut = slice(fine, plane, within);
+        for (const char* const held : {"error", "threshold"}) {
+            const Frame frame =
+                frame_of(explorer, asked + "&" + held + "=" + text_of(error) + "&outlines=on");
+            expect_part(frame, "isosurface", surface.surface);
+            expect_part(frame, "slice", cut.surface);
+            EXPECT_LE(frame.number("error_bound"), (error + data.jump()) * (1 + 1e-6));
+        }
+    }
+    for (const double goal : {2000.0, 20000.0}) {
+        const Frame frame =
+            frame_of(explorer, asked + "&triangles=" + text_of(goal) + "&normals=int8");
+        EXPECT_LE(frame.number("triangles"), goal);
+        EXPECT_GE(frame.number("triangles"), goal / 2);
+        const double least = frame.number("threshold");
+        const Frame again = frame_of(explorer, asked + "&error=" + text_of(least));
+        EXPECT_EQ(again.number("triangles"), frame.number("triangles"));
+    }
+    const double without = frame_of(explorer, "isovalue=0.1&error=0.3").number("triangles");
+    const Frame lens = frame_of(explorer, "isovalue=0.1&error=0.3&lens=0.1,0.2,0.3,0.1&slope=1");
+    EXPECT_GT(lens.number("triangles"), 2 * without);
+    for (const char* const none : {"distance=0.1", "error=0.1&collapse=on"}) {
+        expect_refused([&] { frame_of(explorer, std::string("isovalue=0.1&") + none); },
+                       "data of higher degree are drawn within an error or a number of triangles");
     }
 }
 

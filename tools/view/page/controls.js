@@ -125,9 +125,11 @@ export class Controls {
     if (nothing) return;
     const all = held === 'threshold' && state.threshold === 0;
     const own = held === 'error' || held === 'distance' ? `the ${held} decides` : '';
-    setControl(byId('indicator'), all ? 'all detail is kept' : own);
-    setControl(byId('by-distance'), state.surface ? '' : 'only of an isosurface');
-    setControl(byId('collapse'), state.surface ? '' : 'only of an isosurface');
+    const degree = this.#info.degree > 1 ? 'not for data of higher degree' : '';
+    const flat = state.surface ? '' : 'only of an isosurface';
+    setControl(byId('indicator'), degree || (all ? 'all detail is kept' : own));
+    setControl(byId('by-distance'), degree || flat);
+    setControl(byId('collapse'), degree || flat);
     if (collapses(state)) setWhy('outlines-section', 'Collapsed triangles have no elements.');
   }
 
@@ -161,12 +163,12 @@ export class Controls {
   }
 
   #thresholdText(state, info) {
-    if (state.indicator === 'visual') {
+    if (state.indicator === 'visual' && !(info.degree > 1)) {
       const degrees = 2 * Math.asin(Math.min(state.threshold / 2, 1)) * (180 / Math.PI);
       return `folds up to ${readable(degrees)}°`;
     }
     const text = this.#shareText(state.threshold, info);
-    return state.indicator === 'deviation' ? `error at most ${text}` : text;
+    return state.indicator === 'deviation' || info.degree > 1 ? `error at most ${text}` : text;
   }
 
   #shareText(x, { least, greatest }) {

@@ -38,7 +38,8 @@ public:
     using Element = std::uint32_t;
     static constexpr int dimension = dim;
 
-    /// \throw InvalidInput as CellKinds::of(), for cells of another dimension, for points that are
+    /// Leaves out cells of a lower dimension, as the faces and edges beside cells in space.
+    /// \throw InvalidInput as CellKinds::of(), for cells of a higher dimension, for points that are
     ///        not there or not finite, for flat cells, and where a face of one cell is divided on
     ///        its other side; with the number of the cell or of the point
     explicit LagrangeGrid(const CellArrays& cells);
@@ -64,6 +65,7 @@ public:
     std::size_t point_count() const { return point_count_; }
     int greatest_degree() const { return greatest_degree_; }
     const CurvedCells& curved() const { return curved_; }
+    std::size_t left_out() const { return left_out_; }
     const CellKind& kind(Element cell) const { return kinds_[kind_[cell]]; }
     /// The points of a cell, in VTK's order.
     std::span<const std::uint32_t> points(Element cell) const {
@@ -80,7 +82,9 @@ private:
     std::vector<Point> lattice_places(Element cell) const;
 
     CellKinds kinds_;
-    std::vector<std::uint16_t> kind_;  // of each cell
+    std::vector<std::uint16_t> kind_;   // of each cell
+    std::vector<std::size_t> numbers_;  // of each cell in the arrays
+    std::size_t left_out_ = 0;
     std::vector<std::uint32_t> points_;
     std::vector<std::size_t> first_{0};
     CoarseGrid mesh_;
@@ -99,6 +103,7 @@ template <int dim>
 class LagrangeCornerField {
 public:
     using Grid = LagrangeGrid<dim>;
+    using Element = std::uint32_t;
     using value_type = double;
 
     /// \param values of the points, one each
@@ -109,7 +114,10 @@ public:
         for (std::size_t k = 0; k < nodes.size(); ++k) out[k] = mean_[nodes[k]];
         return 0;
     }
-    NodeMask new_values(std::uint32_t, NodeMask, std::span<double>) const { return ~NodeMask{0}; }
+    NodeMask new_values(std::uint32_t, NodeMask, std::span<double> out) const {
+        std::ranges::fill(out, 0.0);
+        return ~NodeMask{0};
+    }
     /// How far a value is from the mean at most.
     double jump() const { return jump_; }
 
@@ -124,6 +132,7 @@ template <int dim>
 class LagrangeField {
 public:
     using Grid = LagrangeGrid<dim>;
+    using Element = std::uint32_t;
     using value_type = double;
 
     LagrangeField(const Grid& grid, std::span<const double> values)
@@ -138,7 +147,10 @@ public:
         }
         return 0;
     }
-    NodeMask new_values(std::uint32_t, NodeMask, std::span<double>) const { return ~NodeMask{0}; }
+    NodeMask new_values(std::uint32_t, NodeMask, std::span<double> out) const {
+        std::ranges::fill(out, 0.0);
+        return ~NodeMask{0};
+    }
     int degree(std::uint32_t cell) const { return grid_->kind(cell).degree; }
     void evaluate(std::uint32_t cell, std::span<const Point> reference,
                   std::span<double> out) const;
@@ -174,6 +186,9 @@ template <int dim>
 LagrangeGrid<dim>::LagrangeGrid(const CellArrays& cells) : point_count_{cells.point_count()} {
     if (cells.types.empty()) throw InvalidInput("there are no cells");
     copy(cells);
+    if (kind_.empty()) {
+        throw InvalidInput("there are no cells of dimension " + std::to_string(dim));
+    }
     merge_corners(cells);
     for (Element cell = 0; cell < kind_.size(); ++cell) {
         mirrored_.push_back(is_mirrored(cell));
@@ -182,7 +197,7 @@ LagrangeGrid<dim>::LagrangeGrid(const CellArrays& cells) : point_count_{cells.po
     for (std::size_t i = 0; curved_.count > 0 && i < point_count_; ++i) {
         place_.push_back(detail::place_of(cells, static_cast<std::uint32_t>(i)));
     }
-    detail::HangingFaces(mesh_, 2 * rounding_).check();
+    detail::HangingFaces(mesh_, numbers_, 2 * rounding_).check();
 }
 
 /// Takes the kinds and the points of all cells.
@@ -195,7 +210,12 @@ void LagrangeGrid<dim>::copy(const CellArrays& cells) {
     }
     points_.reserve(cells.points.size());
     for (std::size_t i = 0; i < cells.types.size(); ++i) {
+        if (detail::dimension_of_type(cells.types[i]) < dim) {
+            ++left_out_;
+            continue;
+        }
         kind_.push_back(kinds_.of(cells, i));
+        numbers_.push_back(i);
         const CellKind& kind = kinds_[kind_.back()];
         if (topology(kind.shape).dimension != dim) {
             throw InvalidInput("cell " + std::to_string(i) + " is a " +
@@ -259,7 +279,7 @@ bool LagrangeGrid<dim>::is_mirrored(Element cell) const {
     for (std::size_t k = 1; k < nodes(cell).size(); ++k) size = std::max(size, norm(x[k] - x[0]));
     const double measure = dim == 3 ? across[2] : norm(across);
     if (!(std::abs(measure) > 1e-14 * std::pow(size, dim))) {
-        throw InvalidInput("cell " + std::to_string(cell) + " is flat");
+        throw InvalidInput("cell " + std::to_string(numbers_[cell]) + " is flat");
     }
     return (dim == 3 || (across[0] == 0 && across[1] == 0)) && across[2] < 0;
 }

@@ -92,6 +92,7 @@ inline constexpr std::array cell_types{
     CellType{27, "quadratic pyramid", Shape::pyramid, 2, 13},
     CellType{28, "biquadratic quadrilateral", Shape::quadrilateral, 2, 9},
     CellType{29, "triquadratic hexahedron", Shape::hexahedron, 2, 27},
+    CellType{31, "quadratic linear wedge", Shape::prism, 2, 12},
     CellType{32, "biquadratic quadratic wedge", Shape::prism, 2, 18},
     CellType{33, "biquadratic quadratic hexahedron", Shape::hexahedron, 2, 24},
     CellType{69, "Lagrange triangle", Shape::triangle, 0, 0},
@@ -101,6 +102,27 @@ inline constexpr std::array cell_types{
     CellType{73, "Lagrange wedge", Shape::prism, 0, 0},
     CellType{74, "Lagrange pyramid", Shape::pyramid, 0, 0},
 };
+
+/// Types without a shape that is drawn, which are left out beside cells of higher dimension.
+struct LowType {
+    std::uint8_t number;
+    int dimension;
+};
+inline constexpr std::array low_types{
+    LowType{0, 0},  LowType{1, 0},  LowType{2, 0},                   // empty cells, points
+    LowType{3, 1},  LowType{4, 1},  LowType{21, 1}, LowType{35, 1},  // lines
+    LowType{68, 1}, LowType{75, 1},                                  // curves
+    LowType{6, 2},  LowType{7, 2},  LowType{36, 2},                  // strips, polygons
+    LowType{30, 2}, LowType{34, 2}, LowType{76, 2}, LowType{77, 2},  // other curved faces
+};
+
+/// The dimension of cells of a type; 4 where it is not known.
+inline int dimension_of_type(std::uint8_t number) {
+    const auto type = std::ranges::find(cell_types, number, &CellType::number);
+    if (type != cell_types.end()) return topology(type->shape).dimension;
+    const auto low = std::ranges::find(low_types, number, &LowType::number);
+    return low == low_types.end() ? 4 : low->dimension;
+}
 
 /// A node of a quadratic cell: a point, or, where that is left out, a blend of those around it:
 /// from one end to the other in each direction in which the node is inside; what is blended twice
@@ -221,13 +243,13 @@ inline CellKind make_kind(const CellType& type, int degree, std::size_t points) 
 
 }  // namespace detail
 
-/// The dimension of the first cell whose type is known, which all are to have; 3 where none is.
+/// The greatest dimension of a cell, 2 or 3: cells of lower ones are left out.
 inline int dimension_of(const CellArrays& cells) {
-    for (const std::uint8_t number : cells.types) {
-        const auto type = std::ranges::find(detail::cell_types, number, &detail::CellType::number);
-        if (type != detail::cell_types.end()) return topology(type->shape).dimension;
+    int greatest = 2;
+    for (std::size_t i = 0; i < cells.types.size() && greatest == 2; ++i) {
+        if (detail::dimension_of_type(cells.types[i]) > 2) greatest = 3;
     }
-    return 3;
+    return greatest;
 }
 
 /// The kinds of cells that were met.

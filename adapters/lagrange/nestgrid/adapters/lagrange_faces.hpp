@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
 
 #include <nestgrid/adapters/coarse_graph.hpp>
 
@@ -50,8 +52,10 @@ struct FaceMap {
 /// Looks for nodes of other cells on a face that has one cell.
 class HangingFaces {
 public:
+    /// \param numbers of the cells, in sentences
     /// \param distance within which a node lies on a face
-    HangingFaces(const CoarseGrid& grid, double distance) : grid_{&grid}, distance_{distance} {}
+    HangingFaces(const CoarseGrid& grid, std::span<const std::size_t> numbers, double distance)
+        : grid_{&grid}, numbers_{numbers}, distance_{distance} {}
 
     /// \throw InvalidInput with the first face that is divided on its other side, or that more than
     ///        two cells have
@@ -73,14 +77,16 @@ private:
         const auto end = std::ranges::find(face.nodes, 0xFFFFFFFFU);
         return static_cast<std::size_t>(end - face.nodes.begin());
     }
+    std::string name(const CoarseFace& face) const {
+        return std::to_string(numbers_[face.element]);
+    }
     void find_lonely() {
         const std::vector<CoarseFace> faces = sorted_faces(*grid_);
         for (std::size_t i = 0, next = 0; i < faces.size(); i = next) {
             while (next < faces.size() && faces[next].nodes == faces[i].nodes) ++next;
             if (next - i > 2) {
-                throw InvalidInput("the cells " + std::to_string(faces[i].element) + ", " +
-                                   std::to_string(faces[i + 1].element) + " and " +
-                                   std::to_string(faces[i + 2].element) + " share one face");
+                throw InvalidInput("the cells " + name(faces[i]) + ", " + name(faces[i + 1]) +
+                                   " and " + name(faces[i + 2]) + " share one face");
             }
             if (next - i == 1) lonely_.push_back(faces[i]);
         }
@@ -115,13 +121,14 @@ private:
             const bool own = std::ranges::find(face.nodes, *at) != face.nodes.end();
             if (!near || own || !map.contains(x, distance_)) continue;
             throw InvalidInput(
-                "a face of cell " + std::to_string(face.element) +
+                "a face of cell " + name(face) +
                 " is divided on its other side: cells of different size meet there, and their "
                 "hierarchy is not in the file; draw it in the solver");
         }
     }
 
     const CoarseGrid* grid_;
+    std::span<const std::size_t> numbers_;
     double distance_;
     std::vector<CoarseFace> lonely_;
 };

@@ -17,7 +17,9 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -26,7 +28,8 @@
 
 namespace nestgrid {
 
-/// The arrays of an unstructured grid, copied.
+/// The arrays of an unstructured grid, copied. Ghost cells that are duplicates, refined or hidden
+/// are empty ones, which are left out.
 class VtkCells {
 public:
     explicit VtkCells(vtkUnstructuredGrid& grid) {
@@ -36,8 +39,13 @@ public:
             coordinates_.insert(coordinates_.end(), x.begin(), x.end());
         }
         vtkUnsignedCharArray* const types = grid.GetCellTypesArray();
+        vtkUnsignedCharArray* const ghosts = grid.GetCellGhostArray();
+        constexpr int left_out = vtkDataSetAttributes::DUPLICATECELL |
+                                 vtkDataSetAttributes::REFINEDCELL |
+                                 vtkDataSetAttributes::HIDDENCELL;
         for (vtkIdType i = 0; i < grid.GetNumberOfCells(); ++i) {
-            types_.push_back(types->GetValue(i));
+            const bool is_drawn = ghosts == nullptr || (ghosts->GetValue(i) & left_out) == 0;
+            types_.push_back(is_drawn ? types->GetValue(i) : std::uint8_t{VTK_EMPTY_CELL});
             vtkIdType count = 0;
             const vtkIdType* points = nullptr;
             grid.GetCellPoints(i, count, points);
