@@ -13,9 +13,10 @@ namespace nestgrid::engine {
 /// A term of a measure of a component, or what one rank knows of it.
 struct ComponentTerm {
     std::uint64_t component;
-    std::uint64_t term;
+    std::uint64_t number;
     double part;
-    auto key() const { return std::pair(component, term); }
+    std::size_t term() const { return static_cast<std::size_t>(number); }
+    auto key() const { return std::pair(component, number); }
 };
 
 /// Adds up terms of the triangles of all ranks, each component at a home.
@@ -45,26 +46,28 @@ std::vector<double> sum_up(Ranks& ranks, const JoinedPiece& joined, std::size_t 
         const std::size_t first = i;
         for (; i < parts.size() && parts[i].key() == parts[first].key(); ++i) {
             sum.add(parts[i].part);
-            total[parts[i].term].add(parts[i].part);
+            total[parts[i].term()].add(parts[i].part);
         }
-        put(told, ComponentTerm{parts[first].component, parts[first].term, sum.value()});
+        put(told, ComponentTerm{parts[first].component, parts[first].number, sum.value()});
     }
     for (std::size_t term = 0; term < term_count; ++term) {
         total[term].for_each_part([&](double part) {
             put(told, ComponentTerm{joined.components, term, part});
         });
     }
-    std::vector<double> result((joined.components + 1) * term_count, 0.0);
+    const auto components = static_cast<std::size_t>(joined.components);
+    std::vector<double> result((components + 1) * term_count, 0.0);
     std::vector<ExactSum> of_all(term_count);
     for (const Bytes& of_rank : ranks.gather(std::move(told))) {
         for (Reader in(of_rank); in.more();) {
-            const auto [component, term, part] = in.get<ComponentTerm>();
-            if (component == joined.components) of_all[term].add(part);
-            result[component * term_count + term] = part;
+            const auto term = in.get<ComponentTerm>();
+            const auto component = static_cast<std::size_t>(term.component);
+            if (component == components) of_all[term.term()].add(term.part);
+            result[component * term_count + term.term()] = term.part;
         }
     }
     for (std::size_t term = 0; term < term_count; ++term) {
-        result[joined.components * term_count + term] = of_all[term].value();
+        result[components * term_count + term] = of_all[term].value();
     }
     return result;
 }

@@ -155,7 +155,7 @@ void count_open(Ranks& ranks, const Surface<dimension>& piece, JoinedPiece& join
     std::array<std::uint64_t, 2> counts{};
     std::set<std::uint64_t> not_closed;
     for_each_loose(at_home, [&](const Ridge& ridge) {
-        ++counts[ridge.on_boundary];
+        ++counts[ridge.on_boundary != 0 ? 1 : 0];
         not_closed.insert(ridge.component);
     });
     ranks.reduce(counts, Ranks::Reduction::sum);
@@ -198,8 +198,8 @@ JoinedPiece join(const Surface<dimension>& surface,
 }
 
 /// \return how many attributes a vertex has, also of a piece without any
-std::uint64_t agree_on_pieces(const Surface<3>& piece, const JoinedPiece& joined,
-                              const SharedNodes& shared, const std::string& asked) {
+std::size_t agree_on_pieces(const Surface<3>& piece, const JoinedPiece& joined,
+                            const SharedNodes& shared, const std::string& asked) {
     together(&shared, asked.c_str(), [&] {
         if (joined.number.size() != piece.vertices.size() ||
             joined.component_of.size() != piece.simplices.size()) {
@@ -209,7 +209,7 @@ std::uint64_t agree_on_pieces(const Surface<3>& piece, const JoinedPiece& joined
     std::uint64_t attributes =
         piece.vertices.empty() ? 0 : piece.attributes.size() / piece.vertices.size();
     shared.ranks().reduce(std::span(&attributes, 1), Ranks::Reduction::max);
-    return attributes;
+    return static_cast<std::size_t>(attributes);
 }
 
 SurfaceMeasurement measure_all(const Surface<3>& piece, const JoinedPiece& joined,
@@ -225,14 +225,18 @@ SurfaceMeasurement measure_all(const Surface<3>& piece, const JoinedPiece& joine
         shared.ranks(), joined, terms,
         [&](std::size_t t, std::span<double> out) { measure_triangle(piece, t, origin, out); });
     SurfaceMeasurement result;
-    for (std::uint64_t c = 0; c <= joined.components; ++c) {
+    for (std::size_t c = 0; c <= static_cast<std::size_t>(joined.components); ++c) {
         result.components.push_back(measures_of(std::span(sums).subspan(c * terms, terms)));
     }
-    for (const std::uint64_t c : joined.not_closed) result.components[c].closed = false;
+    for (const std::uint64_t c : joined.not_closed) {
+        result.components[static_cast<std::size_t>(c)].closed = false;
+    }
     result.total = std::move(result.components.back());
     result.total.closed = joined.not_closed.empty();
     result.components.pop_back();
-    result.component_of.assign(joined.component_of.begin(), joined.component_of.end());
+    for (const std::uint64_t c : joined.component_of) {
+        result.component_of.push_back(static_cast<std::uint32_t>(c));
+    }
     return result;
 }
 

@@ -34,7 +34,7 @@ public:
                                                  high >> 32U};
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const auto part = static_cast<std::int64_t>(parts[i]);
-            digits_[place / 32 + i] += std::signbit(x) ? -part : part;
+            digits_[static_cast<std::size_t>(place / 32) + i] += std::signbit(x) ? -part : part;
         }
         if (++since_carry_ == most_terms) carry();
     }

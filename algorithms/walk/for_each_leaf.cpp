@@ -7,7 +7,8 @@
 namespace nestgrid::detail {
 
 void for_each_leaf(const Hierarchy<float>& hierarchy, const LeafFunction& function) {
-    const engine::Walk<float> walk(hierarchy, {.values = false, .keys = true, .positions = true});
+    const engine::Walk<float> walk(
+        hierarchy, {.values = false, .keys = true, .positions = true, .on_ranks = true});
     std::array<NodeKey, max_corners> keys;
     std::array<Point, max_corners> positions;
     engine::for_each_element(

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <nestgrid/detail/mean.hpp>
+#include <ranks/cells_across.hpp>
 #include <walk/linear_fit.hpp>
 
 namespace nestgrid::detail {
@@ -109,17 +110,22 @@ struct RimCorner {
     std::uint8_t corner;
 };
 
+/// Nodes and their values.
+using Settled = std::vector<std::pair<std::uint32_t, double>>;
+
 /// Brings means to their nodes by gradients.
 class Rim {
 public:
     /// \param known of each node, whether its value is right
+    /// \param own how many nodes are settled here; the others come behind them
     /// \param limits of all values
     Rim(int dimension, Range limits, const std::vector<RimCell>& cells, std::vector<double>& values,
-        std::vector<bool>& known)
+        std::vector<bool>& known, std::size_t own)
         : dimension_{dimension}, limits_{limits}, cells_{&cells}, values_{&values}, known_{&known} {
         for (std::uint32_t c = 0; c < cells.size(); ++c) {
             for (std::uint8_t k = 0; k < cells[c].corners; ++k) {
-                if (!known[cells[c].node[k]]) around_.push_back({cells[c].node[k], c, k});
+                const std::uint32_t node = cells[c].node[k];
+                if (node < own && !known[node]) around_.push_back({node, c, k});
             }
         }
         std::sort(around_.begin(), around_.end(), [](const RimCorner& a, const RimCorner& b) {
@@ -127,8 +133,11 @@ public:
         });
     }
 
-    void settle() {
-        for (int round = 0; round < rounds && settle_some(false); ++round) {
+    /// \param tell tell(settled), of node numbers and values, takes what other ranks have settled
+    ///        and returns whether any rank has
+    template <class Tell>
+    void settle(const Tell& tell) {
+        for (int round = 0; round < rounds && tell(settle_some(false)); ++round) {
         }
         settle_some(true);
     }
@@ -138,9 +147,9 @@ private:
 
     /// Settles the nodes that can be, all by the values of the round before.
     /// \param all also those around which too little is known
-    /// \return whether there were any
-    bool settle_some(bool all) {
-        std::vector<std::pair<std::uint32_t, double>> settled;
+    /// \return these
+    Settled settle_some(bool all) {
+        Settled settled;
         for (std::size_t i = 0; i < around_.size();) {
             std::size_t end = i;
             while (end < around_.size() && around_[end].node == around_[i].node) ++end;
@@ -155,7 +164,7 @@ private:
             (*values_)[node] = value;
             (*known_)[node] = true;
         }
-        return !settled.empty();
+        return settled;
     }
 
     /// Gathers the cells around a node and what is known at their other corners, in an order that
@@ -193,8 +202,7 @@ private:
         if (total > 0) defect_ = (1 / total) * defect_;
     }
 
-    void settle_node(std::uint32_t node, bool all,
-                     std::vector<std::pair<std::uint32_t, double>>& settled) const {
+    void settle_node(std::uint32_t node, bool all, Settled& settled) const {
         if (samples_.empty()) return;
         const bool beyond = lies_beyond();
         if (!all && beyond && !has_corners_) return;
@@ -259,6 +267,8 @@ public:
             for (std::size_t d = 0; d < 3; ++d) node.pull[d] += std::llround(pull[d]);
         }
     }
+    /// Of all cells that have been counted.
+    std::size_t node_count() const { return nodes_.size(); }
     /// Ends the counting.
     void make_room() {
         first_.assign(1, 0);
@@ -286,20 +296,40 @@ public:
         }
         if (is_rim) rim_.push_back(rim);
     }
-    std::vector<double> values(int dimension) {
+    /// \param own how many nodes are corners of cells of this rank, in front of the others
+    std::vector<double> values(int dimension, std::size_t own, const engine::CellsAcross& across) {
         std::vector<double> values(known_.size());
         std::vector<double> scratch;
         std::size_t begin = 0;
         for (std::size_t n = 0; n < values.size(); ++n) {
             values[n] =
                 mean_of_shares(std::span(shares_).subspan(begin, first_[n] - begin), scratch);
-            if (!std::isfinite(values[n])) known_[n] = false;
+            if (!std::isfinite(values[n]) || n >= own) known_[n] = false;
             begin = first_[n];
         }
         shares_ = {};
+        agree_on_range(across);
         const double length = range_.high - range_.low;
         const Range limits{range_.low - length, range_.high + length};
-        Rim(dimension, limits, rim_, values, known_).settle();
+        const auto tell = [&, key = keys(across)](const Settled& settled) {
+            std::vector<engine::CellsAcross::Found> found;
+            for (const auto& [node, value] : settled) {
+                if (across.any()) found.push_back({key[node], value});
+            }
+            across.tell(found, [&](NodeKey node, double value) {
+                const std::uint32_t* const number = number_->find(node);
+                if (number == nullptr || *number < own) return;
+                values[*number] = value;
+                known_[*number] = true;
+            });
+            return across.any_rank(!settled.empty());
+        };
+        Settled inside;
+        for (std::uint32_t n = 0; across.any() && n < own; ++n) {
+            if (known_[n]) inside.emplace_back(n, values[n]);
+        }
+        tell(inside);
+        Rim(dimension, limits, rim_, values, known_, own).settle(tell);
         return values;
     }
     double middle() const {
@@ -312,6 +342,19 @@ private:
         std::uint32_t count = 0;
     };
 
+    /// The range of the cells of all ranks.
+    void agree_on_range(const engine::CellsAcross& across) {
+        double low = -range_.low;
+        std::array<double*, 2> both{&low, &range_.high};
+        across.take_greatest(both);
+        range_.low = -low;
+    }
+    /// The keys of all nodes, where there are ranks.
+    std::vector<NodeKey> keys(const engine::CellsAcross& across) const {
+        std::vector<NodeKey> keys(across.any() ? known_.size() : 0);
+        if (across.any()) number_->for_each([&](NodeKey key, std::uint32_t n) { keys[n] = key; });
+        return keys;
+    }
     Node& at(NodeKey key) {
         const auto [number, is_new] =
             number_->insert(key, static_cast<std::uint32_t>(nodes_.size()));
@@ -335,12 +378,20 @@ private:
 
 }  // namespace
 
-NodeMeans::NodeMeans(int dimension, const ForEachCell& for_each_cell) {
+NodeMeans::NodeMeans(int dimension, const ForEachCell& for_each_cell,
+                     const engine::SharedNodes* shared)
+    : shared_{shared} {
+    const engine::CellsAcross across(shared, for_each_cell);
     Nodes nodes(number_);
-    for_each_cell([&](const CellWithValue& cell) { nodes.count(cell); });
-    nodes.make_room();
-    for_each_cell([&](const CellWithValue& cell) { nodes.add(cell); });
-    values_ = nodes.values(dimension);
+    engine::together(shared, "means of cells at nodes", [&] {
+        for_each_cell([&](const CellWithValue& cell) { nodes.count(cell); });
+        own_ = nodes.node_count();
+        across.for_each([&](const CellWithValue& cell) { nodes.count(cell); });
+        nodes.make_room();
+        for_each_cell([&](const CellWithValue& cell) { nodes.add(cell); });
+        across.for_each([&](const CellWithValue& cell) { nodes.add(cell); });
+    });
+    values_ = nodes.values(dimension, own_, across);
     middle_ = nodes.middle();
 }
 

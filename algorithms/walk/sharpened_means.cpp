@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <nestgrid/detail/mean.hpp>
+#include <ranks/cells_across.hpp>
 
 namespace nestgrid::detail {
 
@@ -45,21 +46,25 @@ double residual(const NodeMeans& means, const CellWithValue& cell) {
 void NodeMeans::sharpen(int dimension, const ForEachCell& for_each_cell, double part) {
     std::vector<std::pair<double, double>> range;  // of the cells around, and the value as it is
     for (const double value : values_) range.emplace_back(value, value);
-    for_each_cell([&](const CellWithValue& cell) {
+    const auto widen = [&](const CellWithValue& cell) {
         for (const NodeKey key : cell.keys) {
             auto& [low, high] = range[*number_.find(key)];
             low = std::min(low, cell.value);
             high = std::max(high, cell.value);
         }
-    });
-    const NodeMeans residuals(dimension, [&](const auto& visit) {
+    };
+    const engine::CellsAcross across(shared_, for_each_cell);
+    engine::together(shared_, "sharpened means of cells", [&] { for_each_cell(widen); });
+    across.for_each(widen);
+    const ForEachCell for_each_residual = [&](const auto& visit) {
         for_each_cell([&](CellWithValue cell) {
             cell.value = residual(*this, cell);
             visit(cell);
         });
-    });
+    };
+    const NodeMeans residuals(dimension, for_each_residual, shared_);
     number_.for_each([&](NodeKey key, std::uint32_t n) {
-        if (!std::isfinite(values_[n])) return;
+        if (n >= own_ || !std::isfinite(values_[n])) return;
         const double value = values_[n] + part * *residuals.find(key);
         values_[n] = std::clamp(value, range[n].first, range[n].second);
     });

@@ -15,6 +15,7 @@
 
 #include <nestgrid/adapters/mpi.hpp>
 #include <nestgrid/adapters/p4est.hpp>
+#include <nestgrid/algorithms/cell_data.hpp>
 
 #include "drawn_on_ranks.hpp"
 
@@ -173,12 +174,27 @@ struct Bent {
     }
 };
 
+/// Data of the cells here.
+std::vector<double> cell_values(const Grid& grid, bool noise) {
+    std::vector<double> values(grid.leaf_count());
+    for (std::size_t t = 0; t < grid.coarse_count(); ++t) {
+        for_each_leaf(grid, grid.coarse(t).element,
+                      [&](const Grid::Element& e, const auto&, const auto& x) {
+                          values[grid.leaf_index(e)] = sphere(0.5 * (x[0] + x[7]), false, noise);
+                      });
+    }
+    return values;
+}
+
 std::vector<Drawn<3>> draw_on_ranks(const Forest& forest, bool noise, std::size_t sharers,
                                     Ranks& ranks) {
     const Grid mine(forest.get());
     const Distributed grid(mine, ranks, sharers);
     if (forest.nodes() == nullptr) {
         auto all = draw<3>(grid, DistributedField(grid, KeyedField(mine, noise)));
+        const std::vector<double> cells = cell_values(mine, noise);
+        const P4estCellValues of_cells(mine, std::span<const double>(cells));
+        append(all, draw<3>(grid, DistributedField(grid, CellAverages(grid, of_cells))));
         return all;
     }
     const auto values = lnode_values(mine, *forest.nodes(), noise);
@@ -195,6 +211,9 @@ std::vector<Drawn<3>> draw_alone(const Forest& forest, bool noise) {
     std::vector<Drawn<3>> all;
     if (forest.nodes() == nullptr) {
         all = draw<3>(grid, KeyedField(grid, noise));
+        const std::vector<double> cells = cell_values(grid, noise);
+        const P4estCellValues of_cells(grid, std::span<const double>(cells));
+        append(all, draw<3>(grid, CellAverages(grid, of_cells)));
     } else {
         const auto values = lnode_values(grid, *forest.nodes(), noise);
         all = draw<3>(grid, P4estNodalField(grid, forest.nodes(), values));

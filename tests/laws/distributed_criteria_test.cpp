@@ -3,6 +3,7 @@
 //
 // Surfaces of distributed grids under all indicators and criteria that are made for ranks.
 #include <nestgrid/algorithms/blended.hpp>
+#include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/lens.hpp>
 #include <nestgrid/algorithms/mesh_size.hpp>
 #include <nestgrid/algorithms/norm_indicator.hpp>
@@ -10,7 +11,7 @@
 
 #include <level_sets/leaf_bounds.hpp>
 
-#include "program_judge.hpp"
+#include "record_judge.hpp"
 #include "sample_grids.hpp"
 
 using namespace nestgrid_test;
@@ -145,5 +146,68 @@ TEST_P(NormalMutants, FailTheLaws) {
 
 // Five exchanges, and none behind them.
 INSTANTIATE_TEST_SUITE_P(EveryExchange, NormalMutants, testing::Range(0, 6));
+
+/// Surfaces of data of cells: noise, and steps with plateaus.
+struct DrawCells {
+    template <class Grid, class Field>
+    void operator()(const Grid& grid, const Field&, const Executor& executor,
+                    Record& record) const {
+        const auto noise = [](const auto& leaf) {
+            return static_cast<double>(detail::mix64(leaf.at) >> 11U) * 0x1p-53 - 0.5;
+        };
+        const auto steps = [&](const auto& leaf) { return std::floor(4 * noise(leaf)) / 4; };
+        draw(grid, CellAverages(grid, noise), executor, record);
+        draw(grid, CellAverages(grid, steps, CellRule::sharp_centres), executor, record);
+        draw(grid, CellAverages(grid, noise, CellRule::sharp_means), executor, record);
+    }
+    template <class Grid, class Field>
+    static void draw(const Grid& grid, const Field& cells, const Executor& executor,
+                     Record& record) {
+        if constexpr (requires { grid.shared_nodes(); }) {
+            draw_field(grid, DistributedField(grid, cells), executor, record);
+        } else {
+            draw_field(grid, cells, executor, record);
+        }
+    }
+    template <class Grid, class Field>
+    static void draw_field(const Grid& grid, const Field& field, const Executor& executor,
+                           Record& record) {
+        const HierarchicalIndicator indicator(grid, field, executor);
+        for (const double threshold : {0.0, 0.1}) {
+            const auto drawn = isosurface(grid, field, 0.0, under(indicator, threshold),
+                                          {.cap = threshold > 0}, {executor});
+            record.put({drawn.error_bound, static_cast<double>(drawn.counts.extracted)});
+            record.put_surface(drawn.surface);
+        }
+    }
+};
+
+template <class Family>
+void compare_cells(const char* name, unsigned cuttings) {
+    Tally tally;
+    unsigned seed = 70;
+    for (auto& grid : Family::grids()) {
+        std::mt19937 random(++seed);
+        refine_at_random(grid, random, 3, 4, 3, 200);
+        const Whole whole(grid);
+        const RecordJudge<Family::Grid::dimension, DrawCells> judge(whole, some_values(whole, 0),
+                                                                    DrawCells{});
+        for (unsigned i = 0; i < cuttings; ++i) {
+            Cutting cut = some_cutting(seed + i, random);
+            cut.own_keys = true;
+            judge.compare(cut, whole.partition(cut.ranks, cut.how, random), tally);
+        }
+    }
+    tally.expect_none(name);
+}
+
+TEST(DistributedCriteria, CellsHaveTheMeansOfOneRank) {
+    compare_cells<UnbalancedOctree>("cells, unbalanced octrees", 14);
+    compare_cells<BalancedOctree>("cells, balanced octrees", 14);
+    compare_cells<Prisms>("cells, prisms", 7);
+    compare_cells<RedGreenMixed3>("cells, red-green mixed", 7);
+    compare_cells<BisectionTetrahedra>("cells, bisections", 7);
+    compare_cells<UnbalancedQuadtree>("cells, quadtrees", 14);
+}
 
 }  // namespace

@@ -5,6 +5,8 @@
 // that names it, and none waits for a message that never comes.
 #include <optional>
 
+#include <nestgrid/algorithms/cell_data.hpp>
+
 #include "distributed_judge.hpp"
 #include "refusal.hpp"
 #include "sample_grids.hpp"
@@ -34,6 +36,7 @@ struct Odd {
     bool moves_keys = false;          ///< two of its nodes have each other's keys
     int claims_leaf_of = -1;          ///< it says that it has a leaf of this rank
     bool loses_leaf = false;          ///< it says that one of its leaves is elsewhere
+    bool cells_throw = false;         ///< its data of cells cannot be read
 };
 
 /// A grid that changes, and may have keys of its own that mean something else elsewhere.
@@ -128,6 +131,10 @@ private:
         }
         const FragileGrid mine(CutGrid<3>(*whole_, &part, true), &step, &odd);
         const Distributed grid(mine, ranks, odd.most_sharers);
+        const CellAverages cells(grid, [&](const auto&) {
+            if (odd.cells_throw) throw std::runtime_error("the cells are gone");
+            return 1.0;
+        });
         const DistributedField field(grid, FragileField<Real>({&mine, &values}, &step, &odd));
         step = 1;
         const Prerolls prerolls(grid, field);
@@ -222,6 +229,7 @@ TEST(DistributedFaults, OneRankThrows) {
         throw std::runtime_error("nobody listens");
     };
     expect_all_say("progress", odd, {"rank 2: nobody listens"});
+    expect_all_say("data of cells", {.cells_throw = true}, {"rank 2: the cells are gone"});
     expect_all_say("sink", {.sink_fails = true}, {"rank 2: the pipe is closed"});
     expect_all_say("another grid after the fields", {.epoch_in_step = 1},
                    {"rank 2", "the grid has changed since"});

@@ -3,7 +3,6 @@
 //
 // What is not made for distributed grids is refused, on all ranks, before they talk to each other;
 // docs/distributed.md lists the same.
-#include <nestgrid/algorithms/cell_data.hpp>
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/discontinuous_data.hpp>
 #include <nestgrid/algorithms/element_deviations.hpp>
@@ -85,8 +84,6 @@ const std::vector<Refused<3>> in_space{
          const auto all = s.hierarchy();
          const HiddenElements hidden(static_cast<const Hierarchy<double>&>(all));
      }},
-    {"cell averages",
-     [](const auto& s) { CellAverages(s.grid, [](const CutGrid<3>::Element&) { return 1.0; }); }},
     {"discontinuous data",
      [](const auto& s) {
          const LeafValues values;

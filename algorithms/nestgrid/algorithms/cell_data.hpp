@@ -16,6 +16,7 @@
 // and the numbering of leaves do not matter.
 // Memory: O(nodes), 40 to 72 bytes a node, and while it is built 40 more and 16 for each corner of
 // each leaf. Leaves at walls, of simplices and beside nodes that hang take 300 to 400 bytes more.
+// On ranks each tells its leaves to those that have a corner of them, and has the same means.
 #pragma once
 
 #include <concepts>
@@ -52,7 +53,8 @@ public:
     using Element = ElementOf<Grid>;
 
     /// Walks the whole hierarchy twice, or five times where the rule is sharp, and asks each leaf
-    /// as often, for the same number. The grid must outlive the field and stay as it is.
+    /// as often, for the same number; three and eight times on ranks. The grid must outlive the
+    /// field and stay as it is. Collective, where the grid is a Distributed (distributed.hpp).
     /// \throw InvalidInput where the grid has no node keys of its own
     CellAverages(const Grid& grid, LeafValue of_leaf, CellRule rule = CellRule::smooth);
 
@@ -91,7 +93,7 @@ private:
                        leaf_value(detail::element_of<Element>(leaf.element))});
             });
         };
-        detail::NodeMeans means(Grid::dimension, for_each_cell);
+        detail::NodeMeans means(Grid::dimension, for_each_cell, hierarchy.facts().shared);
         if (rule == CellRule::smooth) return means;
         const double part = rule == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3;
         means.sharpen(Grid::dimension, for_each_cell, part);
@@ -103,7 +105,7 @@ private:
             if ((which >> i & 1U) == 0) continue;
             if (const double* mean = means_.find(keys[i])) {
                 out[i] = *mean;
-            } else if (offers(*grid_, Feature::hidden)) {
+            } else if (may_offer<Grid>(Feature::hidden) && offers(*grid_, Feature::hidden)) {
                 out[i] = means_.middle();
             } else {
                 missing |= NodeMask{1} << i;

@@ -19,7 +19,7 @@ struct LeafView {
 
 using LeafFunction = std::function<void(const LeafView&)>;
 
-/// Calls a function for every leaf that is not hidden, in order.
+/// Calls a function for every leaf of this rank that is not hidden, in order.
 void for_each_leaf(const Hierarchy<float>& hierarchy, const LeafFunction& function);
 
 }  // namespace nestgrid::detail

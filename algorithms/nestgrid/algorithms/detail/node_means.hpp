@@ -16,7 +16,8 @@
 //     beyond them, as at a wall, it leaves that range by no more than twice what the numbers differ
 //     by that it is made of, and the range of all cells by no more than its length;
 //   - equal values give that value, to the last bit;
-//   - the numbering of cells, of nodes and of corners does not matter, to the last bit.
+//   - the numbering of cells, of nodes and of corners does not matter, to the last bit; nor does it
+//     matter which rank has which cells.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,10 @@
 
 #include <nestgrid/detail/key_table.hpp>
 #include <nestgrid/shape.hpp>
+
+namespace nestgrid::engine {
+class SharedNodes;
+}
 
 namespace nestgrid::detail {
 
@@ -43,21 +48,25 @@ using ForEachCell = std::function<void(const std::function<void(const CellWithVa
 class NodeMeans {
 public:
     NodeMeans() = default;
+    /// Collective, on ranks.
     /// \param dimension of the cells
-    /// \param for_each_cell called twice
-    NodeMeans(int dimension, const ForEachCell& for_each_cell);
+    /// \param for_each_cell of this rank; called twice, once more on ranks
+    /// \param shared of the grid, or null where all cells are here
+    NodeMeans(int dimension, const ForEachCell& for_each_cell,
+              const engine::SharedNodes* shared = nullptr);
 
     /// Takes off second differences, within the range of the cells around a node and its value.
-    /// \param for_each_cell as before; called three times
+    /// Collective, on ranks.
+    /// \param for_each_cell as before; called three times, five times on ranks
     /// \param part of what cells differ by from the means of their corners: 1/2 where their values
     ///        are those at their centres, 2/3 where they are means
     void sharpen(int dimension, const ForEachCell& for_each_cell, double part);
 
-    /// The value at a node, or null where no cell has it for a corner. It is not a number where
-    /// the value of a cell around the node is not finite.
+    /// The value at a node, or null where no cell of this rank has it for a corner. It is not a
+    /// number where the value of a cell around the node is not finite.
     const double* find(NodeKey key) const {
         const std::uint32_t* number = number_.find(key);
-        return number == nullptr ? nullptr : &values_[*number];
+        return number == nullptr || *number >= own_ ? nullptr : &values_[*number];
     }
     /// A value between those of all cells.
     double middle() const { return middle_; }
@@ -68,7 +77,9 @@ public:
 private:
     KeyTable<NodeKey, std::uint32_t> number_;
     std::vector<double> values_;
+    std::size_t own_ = 0;  // nodes of cells of this rank; others come behind them
     double middle_ = 0;
+    const engine::SharedNodes* shared_ = nullptr;
 };
 
 }  // namespace nestgrid::detail
