@@ -157,6 +157,7 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
             surfaces_[i].builder().flush();
         }
     });
+    if (options_->normals) normals_.complete(walk_->hierarchy());
     if (options_->normals && ranks != nullptr) normals_.add_across();
     for (DrawnSurface<dimension>& surface : surfaces_) {
         surface.finish(options_->at_nodes && !surface.counts_only(), ranks);

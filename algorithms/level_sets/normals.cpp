@@ -71,6 +71,23 @@ Point node_gradient(OwnGradients<Real>& own, const ElementView<Real>& father, co
     return detail::interpolate(local, parent.data());
 }
 
+/// The interpolated corners that name vertices of the element, one bit each: those that lie inside
+/// no maximal edge.
+template <class Real>
+NodeMask named_interpolated(const ElementCuts<Real>& element) {
+    const ElementView<Real>& view = element.view();
+    const Topology& t = view.topology();
+    NodeMask named = 0;
+    for (std::uint8_t e = 0; e < t.edges; ++e) {
+        const KeyPair name = element.name(e);
+        for (const std::uint8_t corner : t.edge[e]) {
+            const NodeKey key = element.keys()[corner];
+            named |= NodeMask{key == name.low || key == name.high} << corner;
+        }
+    }
+    return named & view.interpolated;
+}
+
 }  // namespace
 
 template <class Real>
@@ -84,6 +101,8 @@ void Normals<Real>::begin(bool logs) {
 template <class Real>
 void Normals<Real>::add(const ElementCuts<Real>& element) {
     const View& view = element.view();
+    if (by_key_ && view.interpolated == 0) return;
+    const NodeMask wanted = by_key_ ? named_interpolated(element) : ~NodeMask{0};
     const std::size_t corners = view.corner_count();
     const std::size_t components = element.walk().components();
     std::array<CornerGradient, max_corners> drawn;
@@ -96,6 +115,7 @@ void Normals<Real>::add(const ElementCuts<Real>& element) {
     }
     if (shared_ != nullptr) log_shared(element, std::span(drawn).first(corners));
     for (std::size_t i = 0; i < corners; ++i) {
+        if ((wanted >> i & 1U) == 0) continue;
         const Slot slot = sums_.slot(element.keys()[i]);
         if (!own_) {
             add(slot, drawn[i]);
@@ -133,6 +153,26 @@ void Normals<Real>::append(const Normals& other) {
     for (Slot i = 0; i < other.sums_.count(); ++i) slot.push_back(sums_.slot(other.sums_.node(i)));
     for (const auto& [at, gradient] : other.log_) add(slot[at], gradient);
     of_shared_.append(other.of_shared_);
+}
+
+template <class Real>
+void Normals<Real>::complete(const Hierarchy<Real>& hierarchy) {
+    if (!by_key_) return;
+    constexpr std::size_t most = 256;
+    std::array<Slot, most> slots;
+    std::array<NodeKey, most> nodes;
+    std::array<Point, most> gradients;
+    const auto end = static_cast<Slot>(sums_.count());
+    for (Slot next = 0; next < end;) {
+        std::size_t count = 0;
+        for (; next < end && count < most; ++next) {
+            if (sums_.known(next)) continue;
+            slots[count] = next;
+            nodes[count++] = sums_.node(next);
+        }
+        hierarchy.node_gradients(std::span(nodes).first(count), gradients);
+        for (std::size_t i = 0; i < count; ++i) sums_.add(slots[i], {gradients[i], 1});
+    }
 }
 
 template class Normals<float>;

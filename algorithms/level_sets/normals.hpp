@@ -19,7 +19,8 @@ class Normals {
 public:
     explicit Normals(const Walk<Real>& walk)
         : own_{walk.hierarchy().offers(Feature::gradients)},
-          shared_{walk.hierarchy().facts().shared} {}
+          shared_{walk.hierarchy().facts().shared},
+          by_key_{own_ && shared_ == nullptr && walk.hierarchy().facts().gradients_by_key} {}
 
     /// Begins anew, and keeps its memory.
     /// \param logs whether to log what add() adds, for append()
@@ -28,6 +29,10 @@ public:
     void add(const ElementCuts<Real>& element);
     /// Adds what `other` has logged, in its order.
     void append(const Normals& other);
+
+    /// Adds what is known of nodes without an element: the gradients of the field at the ends of
+    /// cut edges, where it tells them by the keys of nodes. Behind all add() and append().
+    void complete(const Hierarchy<Real>& hierarchy);
 
     /// Adds what other ranks have drawn around shared nodes. Collective.
     void add_across() { of_shared_.sum_up(*shared_, sums_); }
@@ -45,6 +50,8 @@ private:
     bool own_;  // the field has gradients
     bool logs_ = false;
     const SharedNodes* shared_;  // null where there are no ranks
+    // Whether complete() finds gradients, so that add() adds projected ones alone.
+    bool by_key_;
     SharedGradients of_shared_;
     NodeGradients sums_;
     std::vector<std::pair<Slot, CornerGradient>> log_;

@@ -127,6 +127,7 @@ struct HierarchyFacts {
     bool knows_patches = false;         ///< bisection_rows() or bisect() work
     bool bisects_means = false;         ///< the same for visitors that take means
     bool gradients_at_nodes = false;    ///< rows, or bisect(), hand over gradients at any node
+    bool gradients_by_key = false;      ///< node_gradients() works
     bool fills_rows = false;            ///< every node is in a star row
     bool decodes = false;               ///< values at new nodes need those at the corners
     Shape only_shape = Shape::point;    ///< of all elements; point where they may differ
@@ -244,6 +245,8 @@ public:
     /// Gradients of component 0 at the corners, where the field has gradients.
     virtual void corner_gradients(Task* task, const Handle& element,
                                   std::span<Point> out) const = 0;
+    /// The same at nodes, as from each element at them, where facts().gradients_by_key.
+    virtual void node_gradients(std::span<const NodeKey> nodes, std::span<Point> out) const;
 
     /// The degree of the field on a leaf, where it has degree; else 1.
     virtual int degree(Task* task, const Handle& leaf) const;
@@ -281,6 +284,8 @@ protected:
     HierarchyFacts facts_;
 };
 
+template <class Real>
+void Hierarchy<Real>::node_gradients(std::span<const NodeKey>, std::span<Point>) const {}
 template <class Real>
 int Hierarchy<Real>::degree(Task*, const Handle&) const {
     return 1;

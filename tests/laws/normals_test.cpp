@@ -227,4 +227,42 @@ TEST(Normals, AreTheSameInSinksAndFromAnyNumberOfThreads) {
     }
 }
 
+/// Samples whose gradients are known at the corners of elements, but not by the keys of nodes.
+template <class Grid>
+struct ByElement : LatticeField<Grid, float> {
+    using LatticeField<Grid, float>::LatticeField;
+    Point gradient_at(typename Grid::Place) const = delete;
+};
+
+/// On coarser octrees edges are cut whose far ends no drawn element has, and what is known of these
+/// differs; so it does where offsets are 0 by chance.
+/// \param options of which the general walk is one
+template <class Grid>
+void expect_same_by_element(std::span<const double> thresholds, const IsosurfaceOptions& options) {
+    for (const Samples& n : {Samples{17, 17, 17}, Samples{19, 12, 16}}) {
+        const Grid grid({.samples = n});
+        for (const SampledField& data : sampled_fields(n)) {
+            if (data.name == "integer noise" || data.name == "plateaus") continue;
+            const LatticeField field(grid, std::span<const float>(data.values));
+            const ByElement<Grid> by_element(grid, std::span<const float>(data.values));
+            const HierarchicalIndicator offsets(grid, field);
+            for (const double threshold : thresholds) {
+                const Threshold s(&offsets, threshold * data.range);
+                const auto draw = [&](const auto& drawn) {
+                    return isosurface(grid, drawn, data.isovalue, under(s, offsets), options)
+                        .surface;
+                };
+                nestgrid_test::expect_same_bits(draw(field).normals, draw(by_element).normals,
+                                                data.name.c_str());
+            }
+        }
+    }
+}
+
+TEST(Normals, AreTheSameWhereGradientsAreAskedForByElement) {
+    const std::span thresholds(all_thresholds);
+    expect_same_by_element<LatticeOctree<3>>(thresholds.first(1), {.normals = true});
+    expect_same_by_element<LatticeBisection<3>>(thresholds, {.normals = true, .cap = true});
+}
+
 }  // namespace normals_test

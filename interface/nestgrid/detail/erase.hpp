@@ -119,6 +119,12 @@ concept GivesGradientsAtNodes = requires(const Field& field, typename Grid::Node
     field.gradient_at(node);
 };
 
+/// The same of a grid whose keys tell the places of nodes.
+template <class Field, class Grid>
+concept GivesGradientsByKey = requires(const Field& field, const Grid& grid, NodeKey node) {
+    field.gradient_at(grid.place(node));
+};
+
 template <class Grid, class Field>
 class ErasedHierarchy final : public Hierarchy<typename Field::value_type> {
     static_assert(require_nested_grid<Grid>());
@@ -232,6 +238,14 @@ public:
             with(task, [&](auto& context) {
                 call_corner_gradients(*field_, context, element_of<Element>(element), out);
             });
+        }
+    }
+
+    void node_gradients(std::span<const NodeKey> nodes, std::span<Point> out) const override {
+        if constexpr (GivesGradientsByKey<Field, Grid>) {
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                out[i] = field_->gradient_at(grid_->place(nodes[i]));
+            }
         }
     }
 
@@ -352,6 +366,8 @@ private:
         if constexpr (GivesGradientsAtNodes<Field, Grid>) {
             facts.gradients_at_nodes = facts.knows_patches;
         }
+        facts.gradients_by_key =
+            GivesGradientsByKey<Field, Grid> && facts.offers(Feature::gradients);
         facts.bisects_means = facts.knows_patches && facts.dimension == 3;
         if constexpr (requires { field.far_values(); }) facts.far_values = field.far_values();
         if (facts.offers(Feature::presence)) facts.drop_promises_of_whole_grids();

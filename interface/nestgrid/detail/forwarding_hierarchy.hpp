@@ -43,6 +43,9 @@ public:
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
         inner_->corner_gradients(task, element, out);
     }
+    void node_gradients(std::span<const NodeKey> nodes, std::span<Point> out) const override {
+        inner_->node_gradients(nodes, out);
+    }
     int degree(Task* task, const Handle& leaf) const override { return inner_->degree(task, leaf); }
     void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
                   Real* out) const override {

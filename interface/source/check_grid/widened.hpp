@@ -53,6 +53,9 @@ public:
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
         from_->corner_gradients(task, element, out);
     }
+    void node_gradients(std::span<const NodeKey> nodes, std::span<Point> out) const override {
+        from_->node_gradients(nodes, out);
+    }
     int degree(Task* task, const Handle& leaf) const override { return from_->degree(task, leaf); }
     void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
                   double* out) const override {
