@@ -28,7 +28,7 @@ Numbers = Union[Sequence[float], np.ndarray]
 #: What load() reads, by the end of the name.
 PICTURES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm", ".pnm")
 SUFFIXES = [".nestgrid", ".vti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".raw"]
-SUFFIXES += [".vtu", ".vthb", ".htg", ".hierarchy", ".athdf", ".dcm", ".dicom", *PICTURES]
+SUFFIXES += [".vtu", ".pvtu", ".vthb", ".htg", ".hierarchy", ".athdf", ".dcm", ".dicom", *PICTURES]
 BOXES = (".vthb", ".hierarchy", ".athdf")
 
 
@@ -67,14 +67,14 @@ def load(
 ) -> Field | Frames:
     """The field of a file: a Volume, a hierarchy's, Cells, Blocks, or Frames of several.
 
-    path        ends in .nestgrid; or in .vtu, a mesh (Cells); or in .vti, .mhd, .mha, .nrrd,
-                .nhdr, .nii, .nii.gz or .raw, which are volumes: Volume.array[i, j, k] is sample i
-                of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it; or a
-                picture; or a plotfile of AMReX, a folder with the file Header, which must stay as
-                it is; or other boxes of cells (Blocks): .vthb, Enzo's .hierarchy, .athdf of
+    path        ends in .nestgrid; or in .vtu or .pvtu, a mesh (Cells); or in .vti, .mhd, .mha,
+                .nrrd, .nhdr, .nii, .nii.gz or .raw, which are volumes: Volume.array[i, j, k] is
+                sample i of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it;
+                or a picture; or a plotfile of AMReX, a folder with the file Header, which must stay
+                as it is; or other boxes of cells (Blocks): .vthb, Enzo's .hierarchy, .athdf of
                 Athena++, or HDF5 of Chombo or FLASH, of any name; or .htg, hyper trees (Octree).
-                Several plotfiles, or files of boxes or of hyper trees, of one format and with
-                the same cells, are Frames. What has one sample along an axis is a plane:
+                Several plotfiles, or files of boxes or of hyper trees, of one format and with the
+                same cells, are Frames. What has one sample along an axis is a plane:
                 Volume.array[i, j]. Reading .vtu, .vti, .vthb, .htg, .nii and pictures needs VTK's
                 Python package, HDF5 and Enzo h5py, DICOM pydicom
     array       the name of the field, for .nestgrid, cells, .vtu and .vti, or of the series of
@@ -108,7 +108,7 @@ def load(
     given = [each for each, value in raw.items() if value is not None]
     if given and (suffix != ".raw" or plotfile):
         raise InvalidInput(f"load(): {given[0]} is for .raw files: '{first}' describes itself")
-    named = dicom or plotfile or boxes or suffix in (".nestgrid", ".htg", ".vti", ".vtu")
+    named = dicom or plotfile or boxes or suffix in (".nestgrid", ".htg", ".vti", ".vtu", ".pvtu")
     if array and not named:
         raise InvalidInput(f"load(): '{first}' has one array, which has no name: leave out array")
     if rule is not None and not (plotfile or boxes):
@@ -132,7 +132,7 @@ def load(
         return load_boxes(first, array, choice, rule or "smooth")[0]
     if suffix == ".htg":
         return load_trees(first, array, choice)
-    if suffix == ".vtu":
+    if suffix in (".vtu", ".pvtu"):
         return load_mesh(first, array, choice)
     if suffix == ".raw":
         return _raw(first, dims, type, big_endian, spacing)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A program of its own, which reads .vtu by VTK.
+"""A program of its own, which reads .vtu and .pvtu by VTK.
 
 Arguments: the file, and the name of a point data array or nothing. Answers as _answer.py says, with
 the arrays of the mesh one after the other.
@@ -31,9 +31,10 @@ def chosen(path: str, name: str, data: Any) -> Any:
 
 def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
     from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
 
-    reader = vtkXMLUnstructuredGridReader()
+    pieces = path.lower().endswith(".pvtu")
+    reader = vtkXMLPUnstructuredGridReader() if pieces else vtkXMLUnstructuredGridReader()
     errors = Errors(path, reader)
     check_whole(path, reader, "unstructured grid")
     reader.SetFileName(path)
@@ -44,9 +45,13 @@ def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
     if not grid.GetNumberOfCells():
         raise Refused(f"{path} has no cells")
     degrees = grid.GetCellData().GetHigherOrderDegrees()
+    types = vtk_to_numpy(grid.GetCellTypesArray())
+    ghosts = grid.GetCellGhostArray()
+    if ghosts is not None:  # duplicate, refined and hidden ones become empty cells
+        types = np.where(vtk_to_numpy(ghosts) & 41, 0, types)
     arrays = {
         "points": (vtk_to_numpy(grid.GetPoints().GetData()), "float64"),
-        "types": (vtk_to_numpy(grid.GetCellTypesArray()), "uint8"),
+        "types": (types, "uint8"),
         "offsets": (vtk_to_numpy(grid.GetCells().GetOffsetsArray()), "int64"),
         "connectivity": (vtk_to_numpy(grid.GetCells().GetConnectivityArray()), "int64"),
         "values": (vtk_to_numpy(values), "float64"),

@@ -42,7 +42,7 @@ def box(dimension, n, degree):
     return points.reshape(-1, 3), types, offsets, np.arange(len(cells) * count)
 
 
-def write(path, mesh, **fields):
+def write(path, mesh, ghosts=None, **fields):
     points, types, offsets, connectivity = mesh
     grid = vtkUnstructuredGrid()
     places = vtkPoints()
@@ -55,6 +55,10 @@ def write(path, mesh, **fields):
         array = numpy_to_vtk(values, deep=True)
         array.SetName(name)
         grid.GetPointData().AddArray(array)
+    if ghosts is not None:
+        array = numpy_to_vtk(ghosts, deep=True)
+        array.SetName("vtkGhostType")
+        grid.GetCellData().AddArray(array)
     writer = vtkXMLUnstructuredGridWriter()
     writer.SetFileName(str(path))
     writer.SetInputData(grid)
@@ -115,6 +119,44 @@ def test_lenses_ask_for_small_elements():
     assert len(fine.triangles) > 2 * len(plain.triangles)
     assert fine.report()["open_edges"] == 0
     assert fine.error_bound <= 0.05 * (1 + 1e-6)
+
+
+def test_ghosts_and_cells_of_lower_dimension_are_left_out(tmp_path):
+    points, types, offsets, connectivity = mesh = box(3, 3, 2)
+    values = waves(points)
+    surface = nestgrid.Cells(*mesh, values).isosurface(0.4, error=0.05)
+    beside = (
+        points,
+        np.concatenate([[1, 9], types, [3]]),
+        np.concatenate([[0, 1, 5], 5 + offsets[1:], [7 + offsets[-1]]]),
+        np.concatenate([[0, 0, 1, 3, 2], connectivity, [0, 1]]),
+    )
+    same = nestgrid.Cells(*beside, values).isosurface(0.4, error=0.05)
+    np.testing.assert_array_equal(surface.vertices, same.vertices)
+    # Two pieces, one of which has a cell of the other as a ghost.
+    cell = offsets[1]
+    for name, first, last, ghosts in (("a", 0, 14, 1), ("b", 13, 27, 0)):
+        part = slice(first * cell, last * cell)
+        numbers = np.arange((last - first) * cell)
+        flags = np.zeros(last - first, np.uint8)
+        flags[last - first - ghosts :] = 1
+        write(
+            tmp_path / f"{name}.vtu",
+            (points[part], types[first:last], offsets[: last - first + 1], numbers),
+            ghosts=flags,
+            u=values[part],
+        )
+    pieces = "".join(f'<Piece Source="{name}.vtu"/>' for name in "ab")
+    (tmp_path / "ab.pvtu").write_text(
+        '<VTKFile type="PUnstructuredGrid" version="0.1"><PUnstructuredGrid GhostLevel="1">'
+        '<PPoints><PDataArray type="Float64" NumberOfComponents="3"/></PPoints>'
+        '<PPointData><PDataArray type="Float64" Name="u"/></PPointData>'
+        '<PCellData><PDataArray type="UInt8" Name="vtkGhostType"/></PCellData>'
+        f"{pieces}</PUnstructuredGrid></VTKFile>"
+    )
+    joined = nestgrid.load(tmp_path / "ab.pvtu").isosurface(0.4, error=0.05)
+    assert len(joined.triangles) == len(surface.triangles)
+    assert joined.report()["open_edges"] == surface.report()["open_edges"]
 
 
 def test_isolines_and_height_fields():

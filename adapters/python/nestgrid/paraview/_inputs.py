@@ -3,6 +3,7 @@
 """VTK's image data, hyper tree grids, unstructured grids and overlapping AMR as fields."""
 from __future__ import annotations
 
+import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import (
@@ -58,9 +59,13 @@ def _cells(grid: vtkUnstructuredGrid, array: vtkDataArray) -> nestgrid.Cells:
     if not grid.GetNumberOfCells():
         raise nestgrid.InvalidInput("the unstructured grid has no cells")
     degrees = grid.GetCellData().GetHigherOrderDegrees()
+    types = vtk_to_numpy(grid.GetCellTypesArray())
+    ghosts = grid.GetCellGhostArray()
+    if ghosts is not None:  # duplicate, refined and hidden ones become empty cells
+        types = np.where(vtk_to_numpy(ghosts) & 41, 0, types)
     return nestgrid.Cells(
         vtk_to_numpy(grid.GetPoints().GetData()),
-        vtk_to_numpy(grid.GetCellTypesArray()),
+        types,
         vtk_to_numpy(grid.GetCells().GetOffsetsArray()),
         vtk_to_numpy(grid.GetCells().GetConnectivityArray()),
         values,
