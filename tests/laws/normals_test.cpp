@@ -265,4 +265,31 @@ TEST(Normals, AreTheSameWhereGradientsAreAskedForByElement) {
     expect_same_by_element<LatticeBisection<3>>(thresholds, {.normals = true, .cap = true});
 }
 
+/// Gradients are projected where S interpolates: but for a few far ends, normals are those of
+/// fields that are asked by element at any threshold.
+TEST(Normals, OfCoarseOctreesAreProjected) {
+    const Samples n{33, 33, 33};
+    const LatticeOctree<3> grid({.samples = n});
+    for (const SampledField& data : sampled_fields(n)) {
+        const LatticeField field(grid, std::span<const float>(data.values));
+        const ByElement<LatticeOctree<3>> by_element(grid, std::span<const float>(data.values));
+        const HierarchicalIndicator offsets(grid, field);
+        std::size_t other = 0;
+        std::size_t all = 0;
+        for (const double threshold : all_thresholds) {
+            const Threshold s(&offsets, threshold * data.range);
+            const auto draw = [&](const auto& drawn) {
+                return isosurface(grid, drawn, data.isovalue, under(s, offsets), {.normals = true})
+                    .surface.normals;
+            };
+            const std::vector<Point> a = draw(field);
+            const std::vector<Point> b = draw(by_element);
+            ASSERT_EQ(a.size(), b.size());
+            all += a.size();
+            for (std::size_t v = 0; v < a.size(); ++v) other += a[v] == b[v] ? 0U : 1U;
+        }
+        EXPECT_LT(50 * other, all) << data.name;
+    }
+}
+
 }  // namespace normals_test
