@@ -36,7 +36,7 @@ CLI::Validator one_of(std::vector<std::string> words,
 struct Input {
     std::filesystem::path path;
     std::string array;
-    std::string by{};  ///< where it names another field of a .nestgrid, that is component 1
+    std::string by{};  ///< where it names another field of the file, that is component 1
     std::string cells = "smooth";  ///< the rule of values at nodes, where cells have them
     VolumeChoice choice{};         ///< its array and its label aside
     std::vector<double> labels{};  ///< of parts; at most one where a field is read
