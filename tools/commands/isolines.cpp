@@ -73,7 +73,7 @@ Command add_isolines(CLI::App& program) {
     CLI::Option* by =
         isolines
             ->add_option("--by", o->input.by,
-                         "lines on it by another field of a .nestgrid, or by an expression in x, y "
+                         "lines on it by another field of the file, or by an expression in x, y "
                          "and z")
             ->type_name("NAME");
     by->needs(on_surface);
