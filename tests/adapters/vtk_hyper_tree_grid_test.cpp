@@ -116,6 +116,51 @@ TEST(HyperTreeGrid, ReproducesLinearFunctions) {
     expect_linear_functions<2, 3>(*random_trees({4, 3, 1}, 4, 2, false, 3));
 }
 
+/// How many leaves a cursor of VTK meets from where it is.
+std::size_t leaves_below(vtkHyperTreeGridNonOrientedCursor* cursor) {
+    if (cursor->IsLeaf()) return 1;
+    std::size_t count = 0;
+    for (int c = 0; c < cursor->GetNumberOfChildren(); ++c) {
+        cursor->ToChild(static_cast<unsigned char>(c));
+        count += leaves_below(cursor);
+        cursor->ToParent();
+    }
+    return count;
+}
+
+/// The leaves are those of VTK's own cursors, also where a limit makes leaves of divided cells.
+template <int dim, int factor = 2>
+void expect_leaves_of_vtk(vtkHyperTreeGrid& trees) {
+    std::size_t expected = 0;
+    vtkNew<vtkHyperTreeGridNonOrientedCursor> cursor;
+    for (vtkIdType i = 0; i < trees.GetMaxNumberOfTrees(); ++i) {
+        trees.InitializeNonOrientedCursor(cursor, i);
+        expected += leaves_below(cursor);
+    }
+    const HyperTreeGrid<dim, factor> grid(trees);
+    std::size_t leaves = 0;
+    const ZeroField<HyperTreeGrid<dim, factor>> zero;
+    const auto hierarchy = erase(grid, zero);
+    nestgrid::detail::for_each_leaf(hierarchy,
+                                    [&](const nestgrid::detail::LeafView&) { ++leaves; });
+    EXPECT_EQ(leaves, expected);
+}
+
+TEST(HyperTreeGrid, EndsAtTheLimitOfItsDepth) {
+    for (const unsigned limit : {0U, 2U, 9U}) {
+        const vtkNew<vtkHyperTreeGrid> space = random_trees({3, 4, 3}, 4, 1);
+        const vtkNew<vtkHyperTreeGrid> plane = random_trees({1, 4, 3}, 4, 3, false, 3);
+        space->SetDepthLimiter(limit);
+        plane->SetDepthLimiter(limit);
+        expect_leaves_of_vtk<3>(*space);
+        expect_leaves_of_vtk<2, 3>(*plane);
+        if (limit == 0) continue;  // there is nothing to leave out
+        expect_laws<3>(*space);
+        expect_laws<2, 3>(*plane);
+        expect_linear_functions<3>(*space);
+    }
+}
+
 /// Every triangle carries the data of its cell as they are.
 TEST(HyperTreeGrid, SurfacesCarryTheDataOfLeaves) {
     const vtkNew<vtkHyperTreeGrid> trees = random_trees({4, 4, 4}, 4, 5);

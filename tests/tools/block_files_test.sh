@@ -63,6 +63,30 @@ for file in thirds.htg uneven.htg; do
     run isosurface "$file" "later_$file" --field dist --value 0 --threshold 1e-3 --time 1 -o timed.vtp
     cmp -s alone.vtp timed.vtp || fail "$file: the surface at the time of a file is another one"
 done
+# Coordinates may go backwards.
+run isosurface backwards.htg --field dist --value 0 --threshold 0
+[ "$(value open_edges)" = 0 ] || fail "backwards: open edges: $(cat out)"
+awk -v area="$(value area)" -v volume="$(value volume)" 'BEGIN { exit !(area > 1.08 && area < 1.135 && volume > 0.1) }' ||
+    fail "a sphere in trees that go backwards: $(cat out)"
+# Trees in a plane lie there in space, whichever axis it is across.
+ends() { /usr/bin/python3 -c 'import sys, vtk
+reader = vtk.vtkXMLPolyDataReader()
+reader.SetFileName(sys.argv[1])
+reader.Update()
+ends = reader.GetOutput().GetBounds()
+print(*(f"{a:.3f} {b:.3f}" for a, b in zip(ends[::2], ends[1::2])))' "$1"; }
+for factor in 2 3; do
+    for axis in x y z; do
+        run info plane_across_${axis}_$factor.htg
+        [ "$(value dimension)" = 2 ] || fail "info: across $axis: $(cat out)"
+        run isolines plane_across_${axis}_$factor.htg --field dist --values 0 --threshold 0 -o l.vtp
+        value length >>across_$factor
+        case $axis in x) at=1 ;; y) at=3 ;; z) continue ;; esac
+        ends l.vtp | awk -v at=$at '{ if ($at != "0.300" || $(at + 1) != "0.300") exit 1 }' ||
+            fail "lines across $axis lie elsewhere: $(ends l.vtp)"
+    done
+    [ "$(sort -u across_$factor | wc -l)" = 1 ] || fail "lengths across axes: $(cat across_$factor)"
+done
 # A field of cells colours the surface of another one as a formula does, at any time.
 for file in trees.htg thirds.htg uneven.htg; do
     for by in plac x; do
@@ -77,10 +101,23 @@ for file in trees.htg thirds.htg uneven.htg; do
     refused 1 "expression 'plack' is no expression" \
         isolines "$file" --field dist --on-surface 0 --by plack --values 0.5 -o x.vtp
 done
+# A component of a vector colours by its number, and none without one. VTK 9.1 keeps a part of the
+# numbers of vectors in hyper trees alone.
+for file in amr.vthb; do
+    for by in both:1 plac; do
+        run isolines $file --field dist --on-surface 0 --by $by --values 0.4,0.6 --threshold 0 -o by.vtp
+        value length >$by.lengths
+    done
+    cmp -s both:1.lengths plac.lengths || fail "$file: lines by a component: $(cat both:1.lengths plac.lengths)"
+    for by in both both: both:2 both:-1 both:x; do
+        refused 1 "'both' has 2 numbers per cell: choose one by --by 'both:0' to 'both:1'" \
+            isolines $file --field dist --on-surface 0 --by $by --values 0.5 -o x.vtp
+    done
+done
 refused 1 "'uneven.htg' has another grid than the first input" \
     isosurface thirds.htg uneven.htg --field dist --value 0 --time 0.5
 for file in thirds.htg uneven.htg; do
-    refused 1 "its trees are divided by three or have several sizes, unlike those of the first file" \
+    refused 1 "its trees are no boxes, unlike those of the first file" \
         isosurface trees.htg "$file" --field dist --value 0 --time 0.5
 done
 
@@ -104,6 +141,7 @@ refused 1 "'plane_chombo.hdf5' has 2 dimensions, not 3" \
 refused 1 "'amr.vthb' is no file of the format of the first one" \
     isosurface chombo.hdf5 amr.vthb --field dist --value 0 --time 0.5
 refused 1 "round_hdf5_plt_cnt_0000': it has cylindrical coordinates, not cartesian ones" info round_hdf5_plt_cnt_0000
+refused 1 "'plane_across_x.vthb': it does not lie in space, or in a plane of constant z" info plane_across_x.vthb
 mv amr/amr_3.vti amr/gone.vti
 refused 1 "^nestgrid: 'amr.vthb': " info amr.vthb
 truncate -s 300000 athena.athdf

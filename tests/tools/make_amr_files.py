@@ -72,24 +72,30 @@ def values(block: Block, f: Function, blocks: list[Block]) -> np.ndarray:
 Fields = dict[str, Function]
 
 
-def write_vthb(path: str, dim: int, fields: Fields) -> None:
+def write_vthb(path: str, dim: int, fields: Fields, across: int = 2) -> None:
+    """The boxes of a plane lie across an axis."""
     blocks = blocks_of(dim)
+
+    def placed(numbers: list[Any], flat: Any) -> list[Any]:
+        return numbers if dim == 3 else [*numbers[:across], flat, *numbers[across:]]
+
+    planes = (vtk.VTK_YZ_PLANE, vtk.VTK_XZ_PLANE, vtk.VTK_XY_PLANE)
     levels = [[b for b in blocks if b[0] == level] for level in range(3)]
     amr = vtk.vtkOverlappingAMR()
     amr.Initialize(3, [len(level) for level in levels])
-    amr.SetGridDescription(vtk.VTK_XYZ_GRID if dim == 3 else vtk.VTK_XY_PLANE)
+    amr.SetGridDescription(vtk.VTK_XYZ_GRID if dim == 3 else planes[across])
     amr.SetOrigin([0, 0, 0])
     for number, level in enumerate(levels):
         step = 0.5 / N / 2**number
         amr.SetSpacing(number, [step] * 3)
         for i, block in enumerate(level):
-            low = [N * a for a in block[1]] + [0] * (3 - dim)
-            high = [N * a + N - 1 for a in block[1]] + [-1] * (3 - dim)
+            low = placed([N * a for a in block[1]], 0)
+            high = placed([N * a + N - 1 for a in block[1]], -1)
             amr.SetAMRBox(number, i, vtk.vtkAMRBox(low, high))
             grid = vtk.vtkUniformGrid()
             grid.SetOrigin([step * a for a in low])
             grid.SetSpacing([step] * 3)
-            grid.SetDimensions([N + 1] * dim + [1] * (3 - dim))
+            grid.SetDimensions(placed([N + 1] * dim, 1))
             vector = []
             for name, f in fields.items():
                 flat = values(block, f, blocks).ravel(order="F")
@@ -136,8 +142,8 @@ def write_htg(path: str, dim: int, fields: Fields) -> None:
     for tree in range(trees.GetMaxNumberOfTrees()):
         trees.InitializeNonOrientedCursor(cursor, tree, True)
         write(0, tuple(tree // (2 * N) ** d % (2 * N) for d in range(dim)))
-    for name, column in zip(fields, numbers):
-        array = numpy_to_vtk(np.array(column), deep=True)
+    for name, column in [*zip(fields, numbers), ("both", np.transpose(numbers))]:
+        array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
         array.SetName(name)
         trees.GetCellData().AddArray(array)
     writer = vtk.vtkXMLHyperTreeGridWriter()
@@ -147,17 +153,29 @@ def write_htg(path: str, dim: int, fields: Fields) -> None:
     assert writer.Write()
 
 
-def write_trees(path: str, corners: list[np.ndarray], factor: int, names: Fields, divide: Callable[[int, np.ndarray], bool]) -> None:
+def write_trees(
+    path: str,
+    corners: list[np.ndarray],
+    factor: int,
+    names: Fields,
+    divide: Callable[[int, np.ndarray], bool],
+    across: int = 2,
+    place: float = 0,
+) -> None:
     """A hyper tree grid with values at the centres of all cells.
 
-    corners: coordinates of the corners of trees, one array a direction; divide(level, centre)
+    corners: coordinates of the corners of trees, one array a direction; divide(level, centre);
+    of two directions: in the plane across an axis at a place of it
     """
     dim = len(corners)
     trees = vtk.vtkHyperTreeGrid()
-    trees.SetDimensions([len(x) for x in corners] + [1] * (3 - dim))
+    in_space = list(corners)
+    if dim == 2:
+        in_space.insert(across, np.array([place]))
+    trees.SetDimensions([len(x) for x in in_space])
     trees.SetBranchFactor(factor)
     for d, put in enumerate((trees.SetXCoordinates, trees.SetYCoordinates, trees.SetZCoordinates)):
-        put(numpy_to_vtk(corners[d] if d < dim else np.zeros(1), deep=True))
+        put(numpy_to_vtk(in_space[d], deep=True))
     cursor = vtk.vtkHyperTreeGridNonOrientedCursor()
     centres: list[np.ndarray] = []
 
@@ -178,8 +196,9 @@ def write_trees(path: str, corners: list[np.ndarray], factor: int, names: Fields
         at = [tree // int(np.prod(counts[:d])) % counts[d] for d in range(dim)]
         low = np.array([x[i] for x, i in zip(corners, at)])
         write(0, low, np.array([x[i + 1] for x, i in zip(corners, at)]) - low)
-    for name, f in names.items():
-        array = numpy_to_vtk(f(*np.array(centres).T), deep=True)
+    columns = {name: f(*np.array(centres).T) for name, f in names.items()}
+    for name, column in (columns | {"both": np.transpose(list(columns.values()))}).items():
+        array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
         array.SetName(name)
         trees.GetCellData().AddArray(array)
     writer = vtk.vtkXMLHyperTreeGridWriter()
@@ -380,6 +399,8 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     fields = {"dist": ball(0.45 + 0.1 * time), "plac": place}
     path = lambda name: os.path.join(folder, prefix + name)  # noqa: E731
     write_vthb(path("amr.vthb"), dim, fields)
+    if dim == 2:
+        write_vthb(path("across_x.vthb"), dim, fields, across=0)
     write_htg(path("trees.htg"), dim, fields)
     write_flash(path("run_hdf5_plt_cnt_0000"), dim, fields, time)
     write_flash(path("round_hdf5_plt_cnt_0000"), dim, fields, time, "cylindrical")
@@ -390,6 +411,10 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     near = lambda level, x: level < 2 and abs(ball(0.5)(*x)) < 0.1 / 3**level  # noqa: E731
     write_trees(path("thirds.htg"), even, 3, fields, near)
     write_trees(path("uneven.htg"), uneven, 2, fields, near)
+    for axis, name in enumerate("xyz" if dim == 2 else ""):
+        for factor in (2, 3):
+            write_trees(path(f"across_{name}_{factor}.htg"), even, factor, fields, near, axis, 0.3)
+    write_trees(path("backwards.htg"), [even[0][::-1], *even[1:]], 2, fields, near)
 
 
 if __name__ == "__main__":

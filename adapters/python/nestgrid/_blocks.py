@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, Sequence
+from typing import Any, Sequence
 
 import numpy as np
 
@@ -13,10 +13,9 @@ from . import _nestgrid
 from ._arguments import Unfit, name_of, not_a, sequence, takes, whole
 from ._fields import Field
 from ._nestgrid import InvalidInput
-from ._sources import Frames, Numbers, _placed
+from ._sources import Frames, Numbers, Rule, _placed
 
 Box = tuple[int, Sequence[int], np.ndarray]
-Rule = Literal["smooth", "centres", "means"]
 
 
 def _box(value: Any) -> tuple[int, list[int], np.ndarray]:

@@ -15,13 +15,13 @@ from ._arguments import SampleType, flag, numbers, optional, sample_type, sequen
 from ._arguments import path as path_kind
 from ._arguments import name_of, takes, text, whole
 from ._ask import ask
-from ._blocks import BlockFrames, Blocks, Rule
+from ._blocks import BlockFrames, Blocks
 from ._choice import Choice, chosen
 from ._fields import Field
 from ._load_cells import load_boxes, load_mesh, load_tree_frames, load_trees
 from ._load_stored import hierarchy, plotfiles
 from ._nestgrid import InvalidInput, IoError
-from ._sources import Frames, Volume
+from ._sources import Frames, Rule, Volume
 
 Numbers = Union[Sequence[float], np.ndarray]
 
@@ -87,7 +87,8 @@ def load(
     type        for .raw alone: of the samples, "uint8" to "float64"
     big_endian  for .raw alone: whether the highest byte of a sample comes first
     spacing     for .raw alone: distance of samples along x, y and z, in units of length; None: 1
-    rule        for boxes of cells: of the values at nodes, as Blocks() has it; None: "smooth"
+    rule        for boxes and trees of cells: of the values at nodes, as Blocks() has it; None:
+                "smooth"
     times       for several files: ascending, one for each; None: those that the files tell, or
                 0, 1, 2, ... where one of them tells none
 
@@ -111,8 +112,8 @@ def load(
     named = dicom or plotfile or boxes or suffix in (".nestgrid", ".htg", ".vti", ".vtu", ".pvtu")
     if array and not named:
         raise InvalidInput(f"load(): '{first}' has one array, which has no name: leave out array")
-    if rule is not None and not (plotfile or boxes):
-        raise InvalidInput(f"load(): rule is for boxes of cells, not '{first}'")
+    if rule is not None and not (plotfile or boxes or suffix == ".htg"):
+        raise InvalidInput(f"load(): rule is for boxes and trees of cells, not '{first}'")
     choice = Choice(frame, component, magnitude)
     if (plotfile or suffix in (".nestgrid", ".raw")) and choice != Choice():
         raise InvalidInput(
@@ -131,7 +132,7 @@ def load(
     if boxes:
         return load_boxes(first, array, choice, rule or "smooth")[0]
     if suffix == ".htg":
-        return load_trees(first, array, choice)
+        return load_trees(first, array, choice, rule or "smooth")
     if suffix in (".vtu", ".pvtu"):
         return load_mesh(first, array, choice)
     if suffix == ".raw":
@@ -196,7 +197,7 @@ def _frames(
         _require_file(path)
     if kinds[0].suffix == ".htg":
         times_of_files = given or np.arange(float(len(paths))).tolist()
-        return load_tree_frames(paths, array, choice, times_of_files)
+        return load_tree_frames(paths, array, choice, rule, times_of_files)
     loaded: list[tuple[Blocks, float | None]] = []
     for path in paths:
         name = loaded[0][0].name if loaded else array

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ._ask import ask
-from ._blocks import Blocks, Rule
+from ._blocks import Blocks
 from ._cells import Cells
 from ._choice import Choice, chosen, numbered
 from ._nestgrid import InvalidInput
-from ._sources import Octree, OctreeFrames
+from ._sources import Octree, OctreeFrames, Rule
 
 
 def load_mesh(path: str, array: str, choice: Choice) -> Cells:
@@ -36,7 +36,7 @@ def load_mesh(path: str, array: str, choice: Choice) -> Cells:
         raise InvalidInput(f"{path}: {error}") from None
 
 
-def load_trees(path: str, array: str, choice: Choice) -> Octree:
+def load_trees(path: str, array: str, choice: Choice, rule: Rule) -> Octree:
     trees = _trees_of(path, array, choice)
     try:
         return Octree(
@@ -46,6 +46,7 @@ def load_trees(path: str, array: str, choice: Choice) -> Octree:
             factor=trees.factor,
             coordinates=trees.coordinates,
             masked=trees.masked,
+            rule=rule,
             name=trees.name,
         )
     except InvalidInput as error:
@@ -53,7 +54,7 @@ def load_trees(path: str, array: str, choice: Choice) -> Octree:
 
 
 def load_tree_frames(
-    paths: list[str], array: str, choice: Choice, times: list[float]
+    paths: list[str], array: str, choice: Choice, rule: Rule, times: list[float]
 ) -> OctreeFrames:
     first = _trees_of(paths[0], array, choice)
     values = [first.values]
@@ -62,11 +63,12 @@ def load_tree_frames(
         if not first.has_grid_of(other):
             raise InvalidInput(f"load(): '{path}' has another grid than '{paths[0]}'")
         values.append(other.values)
-    along = [np.array(x) for x in first.coordinates] + [np.zeros(1)] * (3 - len(first.coordinates))
+    along = [np.array(x) for x in first.coordinates]
     built_of = (first.max_level, first.factor, along)
     masked = first.masked if first.masked.any() else np.zeros(0, np.uint8)
     try:
-        return OctreeFrames._of(first.leaves, values, times, masked, built_of, paths, first.name)
+        place = (masked, built_of, paths, first.name)
+        return OctreeFrames._of(first.leaves, values, times, *place, rule=rule)
     except InvalidInput as error:
         raise InvalidInput(f"load(): {error}") from None
 

@@ -93,6 +93,7 @@ def octree(
     factor: int,
     coordinates: Sequence[ArrayLike],
     names: Sequence[str],
+    rule: str,
 ) -> OctreeFrames: ...
 def cells(
     points: NDArray[np.float64],

@@ -4,17 +4,29 @@
 
 from __future__ import annotations
 
-from typing import Any, Sequence, Union
+from typing import Any, Literal, Sequence, Union
 
 import numpy as np
 
 from . import _arguments as kinds
 from . import _html, _nestgrid
-from ._arguments import flag, number, numbers, optional, samples, sequence, takes, whole
+from ._arguments import (
+    flag,
+    name_of,
+    number,
+    numbers,
+    optional,
+    samples,
+    sequence,
+    takes,
+    whole,
+)
 from ._fields import Field
 from ._nestgrid import InvalidInput
 
 Numbers = Union[Sequence[float], np.ndarray]
+#: How values of cells become values at nodes.
+Rule = Literal["smooth", "centres", "means"]
 
 
 class Volume(Field):
@@ -108,8 +120,9 @@ class Octree(Field):
     spacing      size of a cell of max_level, in units of length; None: 1
     origin       position of the corner (0, 0, 0); None: 0
     coordinates  in the place of spacing and origin: of the corners of roots, one ascending sequence
-                 for each direction
+                 for each direction. Those of a plane in space are three, one of a single number
     masked       (n,): leaves that are not drawn, as those with a value that is nan; None: all are
+    rule         of values of leaves, (n,): what Blocks() has
     name         of the data, for files and tables
     unit         of length, such as "mm"
 
@@ -126,6 +139,7 @@ class Octree(Field):
         max_level=optional(whole(0, 20)),
         coordinates=optional(sequence(numbers, "one sequence of numbers for each direction")),
         masked=optional(kinds.array),
+        rule=name_of(Rule),
     )
     def __init__(
         self,
@@ -138,6 +152,7 @@ class Octree(Field):
         origin: Numbers | None = None,
         coordinates: Sequence[Numbers] | None = None,
         masked: np.ndarray | None = None,
+        rule: Rule = "smooth",
         name: str = "",
         unit: str = "",
     ) -> None:
@@ -147,6 +162,8 @@ class Octree(Field):
             )
         if not len(leaves):
             raise InvalidInput("Octree(): the octree has no leaves")
+        if rule != "smooth" and values.size != len(leaves):
+            raise InvalidInput("Octree(): rule is for one value for each leaf")
         leaves = np.ascontiguousarray(leaves, np.int64)
         dimension = leaves.shape[1] - 1
         if max_level is None:
@@ -176,7 +193,7 @@ class Octree(Field):
         hidden = np.zeros(0, np.uint8) if masked is None else (masked != 0).astype(np.uint8)
         self._built_of = (max_level, factor, along)
         self._count = len(leaves)
-        self._octree = _nestgrid.octree(leaves, [values], [0], hidden, *self._built_of, [])
+        self._octree = _nestgrid.octree(leaves, [values], [0], hidden, *self._built_of, [], rule)
         self._set(self._octree.first(), name, unit)
 
     def _size(self) -> str:
@@ -312,10 +329,11 @@ class OctreeFrames(Frames):
         names: list[str],
         name: str,
         unit: str = "",
+        rule: Rule = "smooth",
     ) -> OctreeFrames:
         """names are those of files, for sentences; the rest is as for Octree."""
         frames = cls.__new__(cls)
-        frames._frames = _nestgrid.octree(leaves, values, times, masked, *built_of, names)
+        frames._frames = _nestgrid.octree(leaves, values, times, masked, *built_of, names, rule)
         frames._count = len(leaves)
         frames._built_of = built_of
         frames._name = name

@@ -25,22 +25,24 @@ class Trees:
 def trees_of(grid: Any) -> Trees:
     """The leaves of a grid; masked cells and ghost cells are masked.
 
-    Raises ValueError with a sentence where trees lie neither in space nor in a plane of one z.
+    Deeper leaves than the grid's limit of the depth are put together, as VTK's own filters have it.
+
+    Raises ValueError with a sentence where trees lie on a line or in a point.
     """
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     points = np.zeros(3, np.int64)
     grid.GetDimensions(points)
-    flat = points[2] == 1
+    along = [d for d in range(3) if points[d] > 1]
     factor = grid.GetBranchFactor()
-    if (points[:2] < 2).any():
+    if len(along) < 2:
         raise ValueError(
-            f"its trees have dimension {grid.GetDimension()}: trees in space or in a plane of "
-            "constant z are read"
+            f"its trees have dimension {len(along)}: trees in space or in a plane across an axis "
+            "are read"
         )
-    max_level = grid.GetNumberOfLevels() - 1
-    dimension = 2 if flat else 3
-    parts = [_leaves(grid, i, max_level, factor, dimension) for i in range(grid.GetMaxNumberOfTrees())]
+    max_level = min(grid.GetNumberOfLevels() - 1, grid.GetDepthLimiter())
+    number = grid.GetMaxNumberOfTrees()
+    parts = [_leaves(grid, i, max_level, factor, along) for i in range(number)]
     found = [part for part in parts if part]
     if not found:
         raise ValueError("it has no trees")
@@ -54,9 +56,9 @@ def trees_of(grid: Any) -> Trees:
             raise ValueError("its mask or its ghost array has fewer entries than cells")
         masked |= each[index] != 0
     axes = (grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates())
-    if any(axis is None for axis in axes[:dimension]):
-        raise ValueError("its trees have no coordinates")
-    coordinates = [vtk_to_numpy(axis).astype(float) for axis in axes[:dimension]]
+    if None in axes or [axis.GetNumberOfTuples() for axis in axes] != points.tolist():
+        raise ValueError("its trees have another number of coordinates than points")
+    coordinates = [vtk_to_numpy(axis).astype(float) for axis in axes]
     return Trees(leaves, index, masked, max_level, factor, coordinates)
 
 
@@ -70,9 +72,12 @@ def _numbers(bits: Any) -> np.ndarray:
 
 
 def _leaves(
-    grid: Any, number: int, max_level: int, factor: int, dimension: int
+    grid: Any, number: int, max_level: int, factor: int, along: list[int]
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Leaves of one tree, (n, dimension + 1), and their places in the arrays of cells."""
+    """Leaves of one tree, (n, 3 or 4), and their places in the arrays of cells.
+
+    along  the directions in which there is more than one point
+    """
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import reference, vtkBitArray, vtkIdList, vtkTypeInt64Array
 
@@ -81,7 +86,8 @@ def _leaves(
         return None
     corner = [reference(0) for _ in range(3)]
     grid.GetLevelZeroCoordinatesFromIndex(number, *corner)
-    low = np.array([[int(x) * factor**max_level for x in corner[:dimension]]], np.int64)
+    dimension = len(along)
+    low = np.array([[int(corner[d]) * factor**max_level for d in along]], np.int64)
     counts, splits, ids = vtkTypeInt64Array(), vtkBitArray(), vtkIdList()
     # Below masked cells nothing is drawn: they are leaves.
     mask = grid.GetMask() if grid.HasMask() else None
@@ -89,15 +95,18 @@ def _leaves(
     index = np.array([ids.GetId(i) for i in range(ids.GetNumberOfIds())], np.int64)
     is_split = np.zeros(len(index), bool)
     is_split[: splits.GetNumberOfTuples()] = _numbers(splits)
-    leaves = []
+    leaves, indices = [], []
     begin = 0
     number_of = range(factor**dimension)
     children = np.array([[c // factor**d % factor for d in range(dimension)] for c in number_of])
     for level, count in enumerate(vtk_to_numpy(counts)):
-        here = is_split[begin : begin + count]
+        here = is_split[begin : begin + count] & (level < max_level)
+        indices.append(index[begin : begin + count][~here])
         begin += count
         leaf = low[~here]
         leaves.append(np.column_stack([leaf, np.full(len(leaf), level)]))
         part = factor ** (max_level - level - 1) if here.any() else 0
         low = (low[here, None] + children * part).reshape(-1, dimension)
-    return np.concatenate(leaves), index[~is_split]
+        if not here.any():
+            break
+    return np.concatenate(leaves), np.concatenate(indices)

@@ -168,12 +168,14 @@ std::shared_ptr<OctreeFrames> octree_of(const Leaves& leaves, const std::vector<
                                         const std::vector<double>& times, const Masks& masked,
                                         int max_level, int factor,
                                         const std::array<std::vector<double>, 3>& coordinates,
-                                        const std::vector<std::string>& names) {
+                                        const std::vector<std::string>& names,
+                                        const std::string& rule) {
     OctreeArrays arrays;
     arrays.dimension = static_cast<int>(leaves.shape(1)) - 1;
     arrays.factor = factor;
     arrays.max_level = max_level;
     arrays.names = names;
+    arrays.rule = rule_named(rule);
     const auto span_of = [](const auto& array) {
         return std::span(array.data(), static_cast<std::size_t>(array.size()));
     };
@@ -282,7 +284,7 @@ void bind_sources(py::module_& m) {
     m.def("block_frames", &block_frames_of, py::arg("frames"), py::arg("times"), py::arg("names"));
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("times"),
           py::arg("masked"), py::arg("max_level"), py::arg("factor"), py::arg("coordinates"),
-          py::arg("names"));
+          py::arg("names"), py::arg("rule"));
     py::class_<CellSource, Source, std::shared_ptr<CellSource>>(m, "CellSource")
         .def_property_readonly("degree", &CellSource::degree);
     m.def("cells", &cell_source_of, py::arg("points"), py::arg("types"), py::arg("offsets"),

@@ -9,7 +9,8 @@
 namespace nestgrid::python {
 
 template <int dim, int factor>
-Forest<dim, factor>::Forest(const OctreeArrays& arrays) : max_level_{arrays.max_level} {
+Forest<dim, factor>::Forest(const OctreeArrays& arrays)
+    : max_level_{arrays.max_level}, axes_{axes_of(arrays)} {
     check(arrays);
     read_leaves(arrays);
     sort_leaves();
@@ -25,7 +26,7 @@ Forest<dim, factor>::Forest(const OctreeArrays& arrays) : max_level_{arrays.max_
         if (are_of_leaves(each)) mask_missing(each);
     }
     for (const auto& each : arrays.values) {
-        values_.push_back(are_of_leaves(each) ? average(each) : gather(each));
+        values_.push_back(are_of_leaves(each) ? average(each, arrays.rule) : gather(each));
     }
 }
 
@@ -89,13 +90,23 @@ void Forest<dim, factor>::check(const OctreeArrays& arrays) {
 }
 
 template <int dim, int factor>
+std::array<std::size_t, 3> Forest<dim, factor>::axes_of(const OctreeArrays& arrays) {
+    std::array<std::size_t, 3> axes{0, 1, 2};
+    std::stable_partition(axes.begin(), axes.end(), [&](std::size_t d) {
+        return dim == 3 || arrays.coordinates[d].size() > 1;
+    });
+    return axes;
+}
+
+template <int dim, int factor>
 void Forest<dim, factor>::read_leaves(const OctreeArrays& arrays) {
     const std::size_t count = arrays.leaves.size() / (size + 1);
     for (std::size_t d = 0; d < size; ++d) {
-        if (arrays.coordinates[d].size() < 2) {
+        const std::size_t along = arrays.coordinates[axes_[d]].size();
+        if (along < 2) {
             throw InvalidInput("the trees need at least 2 coordinates along each direction");
         }
-        trees_[d] = arrays.coordinates[d].size() - 1;
+        trees_[d] = along - 1;
     }
     const std::int64_t tree_width = width_of(0);
     for (std::size_t i = 0; i < count; ++i) {
@@ -177,9 +188,13 @@ void Forest<dim, factor>::require_tiling() const {
 
 template <int dim, int factor>
 void Forest<dim, factor>::make_coarse(const OctreeArrays& arrays) {
-    const auto coordinate = [&](std::size_t d, std::size_t i) {
-        return d < size ? arrays.coordinates[d][i]
-                        : (arrays.coordinates[d].empty() ? 0.0 : arrays.coordinates[d].front());
+    const auto position = [&](const std::array<std::size_t, 3>& x) {
+        Point p{};
+        for (std::size_t d = 0; d < 3; ++d) {
+            const std::vector<double>& along = arrays.coordinates[axes_[d]];
+            p[axes_[d]] = d < size ? along[x[d]] : (along.empty() ? 0.0 : along.front());
+        }
+        return p;
     };
     std::vector<Point> corners_of_trees;
     coarse_.dimension = dim;
@@ -196,8 +211,7 @@ void Forest<dim, factor>::make_coarse(const OctreeArrays& arrays) {
             std::uint32_t& node = number[x[0] + (trees_[0] + 1) * (x[1] + (trees_[1] + 1) * x[2])];
             if (node == ~std::uint32_t{0}) {
                 node = static_cast<std::uint32_t>(corners_of_trees.size());
-                corners_of_trees.push_back(
-                    {coordinate(0, x[0]), coordinate(1, x[1]), coordinate(2, x[2])});
+                corners_of_trees.push_back(position(x));
             }
             nodes[c] = node;
         }
@@ -237,9 +251,10 @@ void Forest<dim, factor>::mask_missing(std::span<const double> of_leaves) {
 
 /// Values at nodes as CellAverages has them, hidden leaves aside.
 template <int dim, int factor>
-std::vector<double> Forest<dim, factor>::average(std::span<const double> of_leaves) const {
+std::vector<double> Forest<dim, factor>::average(std::span<const double> of_leaves,
+                                                 CellRule rule) const {
     constexpr Shape shape = dim == 2 ? Shape::quadrilateral : Shape::hexahedron;
-    const detail::NodeMeans means(dim, [&](const auto& visit) {
+    const detail::ForEachCell for_each_cell = [&](const auto& visit) {
         std::array<NodeKey, corners> keys;
         std::array<Point, corners> positions;
         for (std::size_t i = 0, tree = 0; i < leaves_.size(); ++i) {
@@ -251,7 +266,11 @@ std::vector<double> Forest<dim, factor>::average(std::span<const double> of_leav
             }
             visit({shape, keys, positions, of_leaves[order_[i]]});
         }
-    });
+    };
+    detail::NodeMeans means(dim, for_each_cell);
+    if (rule != CellRule::smooth) {
+        means.sharpen(dim, for_each_cell, rule == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3);
+    }
     std::vector<double> values(node_count_);
     for (std::size_t node = 0; node < values.size(); ++node) {
         const double* mean = means.find(node);

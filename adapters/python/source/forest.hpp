@@ -62,13 +62,15 @@ public:
 
 private:
     static void check(const OctreeArrays& arrays);
+    /// The directions in space along which the leaves run.
+    static std::array<std::size_t, 3> axes_of(const OctreeArrays& arrays);
     void read_leaves(const OctreeArrays& arrays);
     void sort_leaves();
     void require_tiling() const;
     void make_coarse(const OctreeArrays& arrays);
     void number_corners();
     void mask_missing(std::span<const double> of_leaves);
-    std::vector<double> average(std::span<const double> of_leaves) const;
+    std::vector<double> average(std::span<const double> of_leaves, CellRule rule) const;
     std::vector<double> gather(std::span<const double> of_corners) const;
 
     /// Finest cells along a side of a leaf of a level.
@@ -103,8 +105,9 @@ private:
         Point x = first;
         for (std::size_t d = 0; d < size; ++d) {
             const std::int64_t inside = at[d] - low_[leaf][d] / width * width;
-            x[d] = std::lerp(first[d], last[d],
-                             static_cast<double>(inside) / static_cast<double>(width));
+            const std::size_t along = axes_[d];
+            x[along] = std::lerp(first[along], last[along],
+                                 static_cast<double>(inside) / static_cast<double>(width));
         }
         return x;
     }
@@ -118,6 +121,7 @@ private:
     std::string name_of(std::size_t leaf) const { return "leaf " + std::to_string(order_[leaf]); }
 
     int max_level_;
+    std::array<std::size_t, 3> axes_;
     std::vector<Leaf> leaves_;          // sorted by tree and along the curve
     std::vector<Place> low_;            // of each
     std::vector<std::size_t> order_;    // its place in the arrays

@@ -71,8 +71,10 @@ struct OctreeArrays {
     std::vector<std::span<const double>> values;
     std::vector<std::string> names;        ///< of the frames, for sentences, or nothing
     std::span<const std::uint8_t> masked;  ///< for each leaf, or nothing
-    /// Coordinates of the corners of the trees along each direction.
+    /// Coordinates of the corners of the trees along each direction; trees of squares run along the
+    /// two that have more than one.
     std::array<std::vector<double>, 3> coordinates;
+    CellRule rule = CellRule::smooth;  ///< for values of leaves
 };
 /// The leaves of trees as they are kept, and the values at their corners.
 struct OctreeLeaves {

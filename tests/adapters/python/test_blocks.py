@@ -260,8 +260,6 @@ def test_trees_have_the_surface_of_boxes(amr_files):
         nestgrid.load(amr_files / "trees.htg")
     with pytest.raises(nestgrid.InvalidInput, match="did you mean 'dist'"):
         nestgrid.load(amr_files / "trees.htg", "dits")
-    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes of cells"):
-        nestgrid.load(amr_files / "trees.htg", "dist", rule="means")
     with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
         nestgrid.load(amr_files / "trees.htg", "dist", component=0)
     (amr_files / "cut.htg").write_bytes((amr_files / "trees.htg").read_bytes()[:-9])
@@ -314,6 +312,94 @@ def test_masked_and_ghost_trees(tmp_path):
         for field in (grid_of(factor, mask=last), grid_of(factor, ghosts=last.astype(np.uint8))):
             assert np.isnan(field.probe([[2.5, 2.5, 2.5]])).all()
             assert np.isfinite(field.probe([[0.5, 0.5, 2.5]])).all()
+
+
+@pytest.mark.parametrize("rule", ["smooth", "centres", "means"])
+def test_rules_of_trees(amr_files, rule):
+    """Trees and boxes have the same smooth values and much the same sharp ones, which bring spheres
+    nearer, of trees by threes, too."""
+    boxes = nestgrid.load(amr_files / "chombo.hdf5", "dist", rule=rule).isosurface(0).report()
+    trees = nestgrid.load(amr_files / "trees.htg", "dist", rule=rule).isosurface(0).report()
+    for what in ("area", "volume"):
+        assert trees[what] == pytest.approx(boxes[what], rel=1e-12 if rule == "smooth" else 2e-3), what
+    smooth, sharp = (
+        nestgrid.load(amr_files / "thirds.htg", "dist", rule=each).isosurface(0).report()["volume"]
+        for each in ("smooth", rule)
+    )
+    assert abs(sharp) > abs(smooth) if rule != "smooth" else sharp == smooth
+    paths = [amr_files / "trees.htg", amr_files / "later_trees.htg"]
+    frames = nestgrid.load(paths, "dist", rule=rule)
+    assert frames.at(0).isosurface(0).report()["volume"] == trees["volume"]
+
+
+@pytest.mark.parametrize("rule", ["centres", "means"])
+def test_balls_beside_vtk(tmp_path, rule):
+    """Area and volume of a ball in cells of which one half is finer: means are taken for what they
+    are, so that sharp values are nearer than VTK's; those of centres are as near, but for a tenth."""
+    n = 16
+    filters = pytest.importorskip("vtkmodules.vtkFiltersHyperTree")
+    import vtk
+
+    sys.path.insert(0, TOOLS)
+    try:
+        import make_amr_files
+    finally:
+        sys.path.remove(TOOLS)
+
+    def squared(x, y, z):  # less a constant: a mean over a cell of edge h is greater by h^2 / 4
+        h = np.where(x < 0.5, 1, 0.5) / n
+        return (x - 0.52) ** 2 + (y - 0.5) ** 2 + (z - 0.5) ** 2 - 0.31**2 + h**2 / 4 * (rule == "means")
+
+    path = str(tmp_path / "half.htg")
+    corners = [np.linspace(0, 1, n + 1)] * 3
+    make_amr_files.write_trees(path, corners, 2, {"u": squared}, lambda level, x: level < 1 and x[0] > 0.5)
+    report = nestgrid.load(path, "u", rule=rule).isosurface(0).report()
+    reader = vtk.vtkXMLHyperTreeGridReader()
+    reader.SetFileName(path)
+    contour = filters.vtkHyperTreeGridContour()
+    contour.SetInputConnection(reader.GetOutputPort())
+    contour.SetInputArrayToProcess(0, 0, 0, 1, "u")
+    contour.SetValue(0, 0)
+    mass = vtk.vtkMassProperties()
+    mass.SetInputConnection(contour.GetOutputPort())
+    exact = {"area": 4 * math.pi * 0.31**2, "volume": 4 / 3 * math.pi * 0.31**3}
+    for what, of_vtk in (("area", mass.GetSurfaceArea()), ("volume", mass.GetVolume())):
+        ours, theirs = (abs(abs(each) / exact[what] - 1) for each in (report[what], of_vtk))
+        assert ours < (0.8 if rule == "means" else 1.1) * theirs, (what, ours, theirs)
+
+
+@pytest.mark.parametrize("factor", [2, 3])
+def test_trees_in_planes_across_axes(amr_files, factor):
+    """They lie where they are in space, and have the lines of the plane across z."""
+    lengths = []
+    for axis, name in enumerate("xyz"):
+        field = nestgrid.load(amr_files / f"plane_across_{name}_{factor}.htg", "dist")
+        assert field.dimension == 2
+        lines = field.isolines(0, 0)
+        assert (lines.vertices[:, axis] == 0.3).all()
+        lengths.append(sum(np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines))
+    assert len(lengths) == 3 and np.ptp(lengths) < 1e-12 and lengths[0] > 1
+
+
+def test_trees_end_at_the_limit_of_their_depth(amr_files):
+    """As in VTK's own filters: a divided cell at the limit is a leaf with its own value."""
+    vtk_xml = pytest.importorskip("vtkmodules.vtkIOXML")
+    from nestgrid._vtk_trees import trees_of
+
+    reader = vtk_xml.vtkXMLHyperTreeGridReader()
+    reader.SetFileName(str(amr_files / "thirds.htg"))
+    reader.Update()
+    grid = reader.GetOutputDataObject(0)
+    counts = []
+    for limit in (0, 1, 2, 9):
+        grid.SetDepthLimiter(limit)
+        trees = trees_of(grid)
+        assert trees.leaves[:, -1].max() == trees.max_level == min(limit, 2)
+        volume = (1.0 / 27) ** trees.leaves[:, -1].astype(float)
+        assert volume.sum() == pytest.approx(512)
+        assert len(np.unique(trees.index)) == len(trees.index)
+        counts.append(len(trees.leaves))
+    assert counts[0] == 512 < counts[1] < counts[2] == counts[3]
 
 
 @pytest.mark.parametrize("name", ["trees.htg", "thirds.htg", "uneven.htg"])
@@ -452,7 +538,7 @@ def test_rules_of_formats_of_codes(amr_files):
     }
     assert all(np.ptp(each) < 1e-12 for each in areas.values())
     assert len({round(each[0], 9) for each in areas.values()}) == 3
-    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes of cells, not 'a.nii'"):
+    with pytest.raises(nestgrid.InvalidInput, match="rule is for boxes and trees of cells, not 'a.nii'"):
         nestgrid.load("a.nii", rule="means")
 
 
@@ -476,6 +562,8 @@ def test_refusals_of_formats_of_codes(amr_files):
     np.testing.assert_allclose(second.range, [0, 1], atol=1e-12)
     with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
         load(amr_files / "chombo.hdf5", "dist", component=0)
+    with pytest.raises(nestgrid.IoError, match="does not lie in space, or in a plane of constant z"):
+        load(amr_files / "plane_across_x.vthb", "dist")
     with pytest.raises(nestgrid.IoError, match="has cylindrical coordinates, not cartesian ones"):
         load(amr_files / "round_hdf5_plt_cnt_0000", "dist")
     (amr_files / "cut.athdf").write_bytes((amr_files / "athena.athdf").read_bytes()[:-9000])

@@ -3,6 +3,7 @@
 #include "input/blocks/block_file.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "input/field_pair.hpp"
@@ -142,16 +143,17 @@ InputField frames_of(std::vector<BlockFile> files, const Input& input, const Pat
         if (first_arrays.empty()) first_arrays = arrays;
         return Field(*grid, std::move(arrays), rule_of(input.cells));
     };
-    const bool has_other =
-        std::ranges::find(first.fields, input.by, &BlockFile::Field::name) != first.fields.end();
+    const std::optional<OtherField> other = other_field(first.fields, input.by);
     for (const BlockFile& file : kept->files) {
         const int component = component_of(file.fields[number_of(file.fields, name)], input);
         fields.push_back(add(file, name, component));
-        if (has_other) pairs.emplace_back(fields.back(), add(file, input.by, 0));
+        if (!other) continue;
+        pairs.emplace_back(fields.back(),
+                           add(file, first.fields[other->field].name, other->component));
     }
     InputField field;
-    field.frames = has_other ? nestgrid::shared_frames(grid, std::move(pairs), times, kept)
-                             : nestgrid::shared_frames(grid, std::move(fields), times, kept);
+    field.frames = other ? nestgrid::shared_frames(grid, std::move(pairs), times, kept)
+                         : nestgrid::shared_frames(grid, std::move(fields), times, kept);
     if (any_missing) field.frames = field.frames.without_missing();
     field.name = name;
     field.nodes = grid->used_node_count();
@@ -242,6 +244,30 @@ std::size_t number_of(const std::vector<BlockFile::Field>& fields, const std::st
     const std::string chosen = field_named(all, name).name;
     const auto at = std::ranges::find(fields, chosen, &BlockFile::Field::name);
     return static_cast<std::size_t>(at - fields.begin());
+}
+
+std::optional<OtherField> other_field(const std::vector<BlockFile::Field>& fields,
+                                      const std::string& by) {
+    const auto found = [&](const std::string& name) {
+        return std::ranges::find(fields, name, &BlockFile::Field::name);
+    };
+    const std::size_t colon = std::min(by.rfind(':'), by.size());
+    const bool is_whole = found(by) != fields.end();
+    const auto at = is_whole ? found(by) : found(by.substr(0, colon));
+    if (at == fields.end()) return std::nullopt;
+    const std::string chosen = is_whole ? "" : by.substr(colon + 1);
+    int component = 0;
+    const char* const end = chosen.data() + chosen.size();
+    const bool is_number =
+        chosen.empty() || std::from_chars(chosen.data(), end, component).ptr == end;
+    const bool is_chosen = !is_whole && !chosen.empty();
+    if (!is_number || component < 0 || component >= at->components ||
+        (at->components > 1 && !is_chosen)) {
+        throw InvalidInput("'" + at->name + "' has " + std::to_string(at->components) +
+                           " numbers per cell: choose one by --by '" + at->name + ":0' to '" +
+                           at->name + ":" + std::to_string(at->components - 1) + "'");
+    }
+    return OtherField{static_cast<std::size_t>(at - fields.begin()), component};
 }
 
 int component_of(const BlockFile::Field& field, const Input& input) {

@@ -111,6 +111,17 @@ InputField block_field(std::vector<BlockFile> files, const Input& input,
 /// The number of a field; an empty name stands for the only one.
 /// \throw nestgrid::InvalidInput where there is none
 std::size_t number_of(const std::vector<BlockFile::Field>& fields, const std::string& name);
+/// A field and a component of it, as --by names them: "velocity:1", or "density" for one of one
+/// number.
+struct OtherField {
+    std::size_t field;
+    int component;
+};
+/// What --by names, or nothing where it names no field.
+/// \throw nestgrid::InvalidInput where a field has several numbers per cell and none of them is
+/// chosen, or the chosen one is not there
+std::optional<OtherField> other_field(const std::vector<BlockFile::Field>& fields,
+                                      const std::string& by);
 /// The component that an input chooses.
 /// \throw nestgrid::InvalidInput where a field has several numbers per cell and none of them is
 /// chosen, or the chosen one is not there

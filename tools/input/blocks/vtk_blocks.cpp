@@ -112,6 +112,10 @@ std::pair<std::vector<BlockFile::Field>, bool> fields_in(vtkCellData& cells) {
 
 BlockFile blocks_of_vtk(const vtkSmartPointer<vtkOverlappingAMR>& amr,
                         std::vector<BlockFile::Field> fields, bool is_double) {
+    const int directions = amr->GetGridDescription();
+    if (directions != VTK_XYZ_GRID && directions != VTK_XY_PLANE) {
+        throw InvalidInput("it does not lie in space, or in a plane of constant z");
+    }
     BlockFile file;
     file.is_double = is_double;
     file.dimension = amr->GetGridDescription() == VTK_XY_PLANE ? 2 : 3;

@@ -90,14 +90,14 @@ private:
     vtkHyperTree* tree_;
 };
 
-/// Whether the coordinates of trees have one distance.
+/// Whether the coordinates of trees ascend by one distance.
 bool is_even(vtkDataArray& along) {
     const vtkIdType trees = along.GetNumberOfTuples() - 1;
     const double begin = along.GetTuple1(0);
     const double step = (along.GetTuple1(trees) - begin) / static_cast<double>(trees);
     for (vtkIdType i = 0; i <= trees; ++i) {
         const double off = along.GetTuple1(i) - begin - static_cast<double>(i) * step;
-        if (!(std::abs(off) <= 1e-3 * std::abs(step))) return false;
+        if (!(std::abs(off) <= 1e-3 * step)) return false;
     }
     return true;
 }
@@ -110,6 +110,7 @@ void place_trees(TreeBoxes& out) {
         out.blocks.spacing[d] =
             (along.GetTuple1(trees) - out.blocks.origin[d]) / static_cast<double>(trees);
     }
+    if (out.dimension == 2) out.blocks.origin[2] = coordinates_of(*out.grid)[2]->GetTuple1(0);
 }
 
 }  // namespace

@@ -52,7 +52,8 @@ BlockFile open_htg(const fs::path& path) {
     const auto grid = read_htg(path);
     if (!head_of(*grid).holds_boxes) {
         throw InvalidInput(
-            "its trees are divided by three or have several sizes, unlike those of the first file");
+            "its trees are no boxes, unlike those of the first file: they are divided by three, of "
+            "several sizes, or in a plane across x or y");
     }
     const auto trees = std::make_shared<const TreeBoxes>(tree_boxes(grid));
     BlockFile file;

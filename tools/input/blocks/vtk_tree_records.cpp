@@ -110,12 +110,12 @@ void put_trees(const fs::path& path, const Input* input, Parcel& out) {
         values = numbers_of(records, data_of(field), component_of(field, *input));
         heads.push_back({field.components, field.name.size(), {}});
         names = field.name;
-        const auto other = std::ranges::find(fields, input->by, &BlockFile::Field::name);
-        if (other != fields.end()) {
-            const std::vector<double> more = numbers_of(records, data_of(*other), 0);
+        if (const auto other = other_field(fields, input->by)) {
+            const BlockFile::Field& by = fields[other->field];
+            const auto more = numbers_of(records, data_of(by), other->component);
             values.insert(values.end(), more.begin(), more.end());
-            heads.push_back({other->components, other->name.size(), {}});
-            names += other->name;
+            heads.push_back({by.components, by.name.size(), {}});
+            names += by.name;
         }
     } else {
         for (const BlockFile::Field& field : fields) {
@@ -151,9 +151,9 @@ TreeHead head_of(vtkHyperTreeGrid& grid) {
                   grid.GetDimension(),
                   static_cast<unsigned>(grid.GetBranchFactor()),
                   grid.GetBranchFactor() == 2};
-    if (head.dimension != (points[2] == 1 ? 2U : 3U) || points[0] < 2 || points[1] < 2) {
+    if (head.dimension < 2) {
         throw InvalidInput("its trees have dimension " + std::to_string(head.dimension) +
-                           ": trees in space or in a plane of constant z are read");
+                           ": trees in space or in a plane across an axis are read");
     }
     const auto along = coordinates_of(grid);
     for (std::size_t d = 0; d < 3; ++d) {
@@ -161,7 +161,8 @@ TreeHead head_of(vtkHyperTreeGrid& grid) {
         throw InvalidInput("its trees have " + std::to_string(points[d]) + " points in direction " +
                            std::to_string(d) + ", but another number of coordinates");
     }
-    head.holds_boxes = head.holds_boxes && trees_have_one_size(grid);
+    const bool is_across_z = head.dimension == 3 || points[2] == 1;
+    head.holds_boxes = head.holds_boxes && is_across_z && trees_have_one_size(grid);
     return head;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hyper tree grids of VTK (.htg) that are no boxes of cells: divided by three, or with trees of
-// several sizes. A child process reads the file; the trees pass through a parcel cell by cell,
-// depth first, and become a hyper tree grid again.
+// Hyper tree grids of VTK (.htg) that are no boxes of cells: divided by three, with trees of
+// several sizes, or in planes across x or y. A child process reads the file; the trees pass through
+// a parcel cell by cell, depth first, and become a hyper tree grid again.
 #pragma once
 
 #include <vtkHyperTreeGrid.h>

@@ -4,6 +4,8 @@
 // How the texts of a plotfile are read and checked. Included at the end of amrex_plotfile.hpp.
 #pragma once
 
+#include <nestgrid/adapters/amrex_plotfile.hpp>
+
 namespace nestgrid {
 
 inline AmrexPlotfile::AmrexPlotfile(const std::filesystem::path& folder) : folder_{folder} {

@@ -92,8 +92,6 @@ def _volume(image: vtkImageData, array: vtkDataArray) -> nestgrid.Volume:
 
 
 def _octree(grid: vtkHyperTreeGrid, array: vtkDataArray) -> nestgrid.Octree:
-    if grid.GetDimension() != 3:
-        raise nestgrid.InvalidInput("hyper tree grids need dimension 3")
     try:
         trees = trees_of(grid)
     except ValueError as error:

@@ -37,9 +37,10 @@ namespace nestgrid {
 /// Whether cells are drawn that another process has, too.
 enum class GhostCells : std::uint8_t { hidden, shown };
 
-/// A hyper tree grid of dimension 2 or 3 and of branch factor 2 or 3. It must outlive this object,
-/// which must be made anew when the grid has changed: when trees were refined, when it has another
-/// mask, other ghost cells or coordinates, or when one of these was told to be Modified().
+/// A hyper tree grid of dimension 2 or 3 and of branch factor 2 or 3, down to the limit of its
+/// depth, where it has one (SetDepthLimiter). It must outlive this object, which must be made anew
+/// when the grid has changed: when trees were refined, when it has another mask, other ghost cells
+/// or coordinates, or when one of these was told to be Modified().
 template <int dim, int factor = 2>
 class HyperTreeGrid {
     static_assert((dim == 2 || dim == 3) && (factor == 2 || factor == 3));
@@ -85,7 +86,7 @@ public:
         if (dim == 3 && v[2] < 0) c.orientation = -1;  // where a coordinate decreases
         return c;
     }
-    const Rule* split(const Element& e) const { return e.tree->IsLeaf(e.vertex) ? nullptr : rule_; }
+    const Rule* split(const Element& e) const { return is_leaf(e) ? nullptr : rule_; }
     void children(const Element& e, std::span<Element> out) const {
         const vtkIdType first = e.tree->GetElderChildIndex(static_cast<unsigned>(e.vertex));
         for (std::size_t c = 0; c < out.size(); ++c) {
@@ -162,6 +163,7 @@ private:
         for (; levels > 0; --levels) cells *= factor;
         return cells;
     }
+    bool is_leaf(const Element& e) const { return e.level >= depth_ || e.tree->IsLeaf(e.vertex); }
     /// Whether a leaf that is not hidden fills the place of an element of a level.
     bool is_undivided(const Place& place, int level) const;
 
@@ -169,7 +171,7 @@ private:
     GhostCells ghost_cells_;
     const Rule* rule_;
     detail::NodesOfTrees<dim, factor> nodes_;
-    int depth_ = 0;
+    int depth_ = 0;                      // of the deepest leaves
     std::array<std::size_t, 3> axis_{};  // directions in which there is more than one point
     std::array<std::vector<double>, 3> coordinates_;
     std::vector<Tree> trees_;
@@ -192,7 +194,7 @@ HyperTreeGrid<dim, factor>::HyperTreeGrid(vtkHyperTreeGrid& grid, GhostCells gho
                            std::to_string(grid.GetBranchFactor()) + ", not " +
                            std::to_string(factor));
     }
-    depth_ = static_cast<int>(grid.GetNumberOfLevels()) - 1;
+    depth_ = static_cast<int>(std::min(grid.GetNumberOfLevels() - 1, grid.GetDepthLimiter()));
     const std::array<vtkDataArray*, 3> x{grid.GetXCoordinates(), grid.GetYCoordinates(),
                                          grid.GetZCoordinates()};
     const unsigned* points = grid.GetDimensions();
@@ -261,7 +263,7 @@ bool HyperTreeGrid<dim, factor>::is_undivided(const Place& place, int level) con
     grid_->GetIndexFromLevelZeroCoordinates(index, root[0], root[1], root[2]);
     Element e{grid_->GetTree(index), 0, 0, {root[0], root[1], root[2]}};
     if (e.tree == nullptr) return false;
-    while (!e.tree->IsLeaf(e.vertex)) {
+    while (!is_leaf(e)) {
         if (e.level == level) return false;
         std::size_t child = 0;
         const std::uint32_t below = cells_in(level - e.level - 1);

@@ -342,6 +342,25 @@ def check_hyper_tree_grid():
     assert fetch(slice).GetPointData().GetArray("Depth").GetRange()[1] > 0
 
 
+def check_flat_hyper_tree_grid():
+    """Trees in a plane across any axis are drawn there, as fields in the plane."""
+    for axis in range(3):
+        points = [5, 5, 5]
+        points[axis] = 1
+        source = pv.HyperTreeGridRandom(Dimensions=points, MaxDepth=4, SplitFraction=0.4, Seed=3)
+        source.UpdatePipeline()
+        lines = pv.NestgridIsolines(Input=source)
+        lines.Scalars = ["CELLS", "Depth"]
+        lines.Values = [1.2]
+        data = fetch(lines)
+        assert data.GetNumberOfLines() > 10, axis
+        low, high = data.GetBounds()[2 * axis : 2 * axis + 2]
+        assert low == high, "lines lie in the plane"
+        heights = pv.NestgridHeightField(Input=source)
+        heights.Scalars = ["CELLS", "Depth"]
+        assert fetch(heights).GetNumberOfPolys() > 10, axis
+
+
 def check_overlapping_amr():
     source = pv.AMRGaussianPulseSource()
     source.UpdatePipeline()
@@ -460,6 +479,7 @@ check_outlines()
 check_planes()
 check_unstructured_grid()
 check_hyper_tree_grid()
+check_flat_hyper_tree_grid()
 check_overlapping_amr()
 check_reader()
 check_times()
