@@ -139,6 +139,38 @@ TEST(BlockFields, ThatAreSharpAgreeWithCellAverages) {
     }
 }
 
+template <int dim>
+void expect_gradients_by_key() {
+    for (unsigned seed = 1; seed < 6; ++seed) {
+        const Blocks<dim> blocks = random_blocks<dim>({.seed = seed, .side = 4});
+        const BlockGrid<dim> grid(blocks);
+        std::mt19937 random(seed);
+        const BlockData<dim> data(blocks, [&](const Point&) { return uniform(random); });
+        for (const CellRule rule : rules) {
+            const BlockCells<dim, double> field(grid, data.arrays(), rule);
+            const auto hierarchy = erase(grid, field);
+            ASSERT_TRUE(hierarchy.facts().gradients_by_key);
+            const engine::Walk<double> walk(hierarchy, {.keys = true});
+            engine::for_each_element(walk, false, [&](const auto& view, const engine::Split&) {
+                std::array<NodeKey, max_corners> key;
+                std::array<Point, max_corners> of_element;
+                std::array<Point, max_corners> of_node;
+                const std::size_t count = view.corner_count();
+                walk.corners(view, key.data(), nullptr);
+                walk.gradients(view, std::span(of_element).first(count));
+                hierarchy.node_gradients(std::span(key).first(count), of_node);
+                for (std::size_t k = 0; k < count; ++k) ASSERT_EQ(of_node[k], of_element[k]);
+            });
+        }
+    }
+}
+
+/// Asked for by key, gradients have the bits of those of any element at the node.
+TEST(BlockFields, HaveOneGradientAtANode) {
+    expect_gradients_by_key<2>();
+    expect_gradients_by_key<3>();
+}
+
 /// Boxes cut in other ways, with other ghosts, in another order, give the same values.
 TEST(BlockFields, DoNotDependOnHowBoxesAreCut) {
     for (unsigned seed = 1; seed < 6; ++seed) {

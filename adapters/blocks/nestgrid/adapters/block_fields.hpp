@@ -172,6 +172,10 @@ public:
     /// quadratic functions inside, also where levels meet, of linear ones at walls. 0 where numbers
     /// of cells are missing. Unless the rule is sharp_means, numbers are taken as those at centres.
     void corner_gradients(const Element& e, std::span<Point> out) const;
+    /// The same at a node.
+    Point gradient_at(const typename BlockGrid<dim>::Node& node) const {
+        return finite_gradient(node.place, reader_.grid().leaves_around(node.place, node.near));
+    }
 
 private:
     static constexpr auto size_ = static_cast<std::size_t>(dim);
@@ -184,11 +188,7 @@ private:
         double low = 0;     ///< of the cells
         double high = 0;
     };
-    /// A node, and a cell near it.
-    struct Node {
-        Place place{};
-        BlockCell<dim> near;
-    };
+    using Node = typename BlockGrid<dim>::Node;
     /// The smooth values around the nodes of an element, each computed once, and whether all cells
     /// of one node are here.
     class Smooth;
@@ -222,6 +222,11 @@ private:
     std::array<double, size_> even_slope(const Around& around) const;
     /// Per unit length; not finite where numbers are missing.
     Point gradient(const Place& node, const Around& around) const;
+    /// 0 where numbers are missing.
+    Point finite_gradient(const Place& node, const Around& around) const {
+        const Point slope = gradient(node, around);
+        return std::isfinite(dot(slope, slope)) ? slope : Point{0, 0, 0};
+    }
     /// The share of the residuals that a sharp rule adds.
     double part() const { return rule_ == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3; }
     /// Values at new nodes of an element among leaves of one level, with the same bits; false

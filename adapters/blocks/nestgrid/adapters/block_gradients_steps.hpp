@@ -187,8 +187,7 @@ void BlockCells<dim, Real>::corner_gradients(const Element& e, std::span<Point> 
     for (std::size_t k = 0; k < out.size(); ++k) {
         const Place node = grid.corner(e, k);
         const Around around = grid.leaves_around(node, near);
-        out[k] = gradient(node, around);
-        if (!std::isfinite(dot(out[k], out[k]))) out[k] = {0, 0, 0};
+        out[k] = finite_gradient(node, around);
         for (const BlockCell<dim>& cell : around) {
             if (near.box < 0) near = cell;
         }

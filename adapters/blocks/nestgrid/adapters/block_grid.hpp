@@ -65,6 +65,12 @@ public:
     /// The cells around a node, one for each corner that they have there, as in tensor order.
     using Around = std::array<BlockCell<dim>, static_cast<std::size_t>(max_corners)>;
 
+    /// A node: its finest place, and a cell near it, of which level and box are known at most.
+    struct Node {
+        Place place{};
+        BlockCell<dim> near;
+    };
+
     struct Element {
         Place cell{};             ///< in cells of its depth
         std::int32_t finer = -1;  ///< the box of the next level that covers it, or -1
@@ -108,6 +114,8 @@ public:
     Place finest_size() const;
     /// The extent of the cells of the last level.
     Point finest_spacing() const { return (1.0 / extent(0)) * spacing_; }
+    /// The node that has a key.
+    Node place(NodeKey key) const;
     /// The place of a new node in its element, in halves of an edge.
     const Place& half(std::size_t n) const { return halves_[n]; }
     /// The finest place of a new node of an element, and of a corner.

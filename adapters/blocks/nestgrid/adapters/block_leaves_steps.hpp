@@ -120,6 +120,32 @@ auto BlockGrid<dim>::finest_size() const -> Place {
 }
 
 template <int dim>
+auto BlockGrid<dim>::place(NodeKey key) const -> Node {
+    auto rest = static_cast<std::uint64_t>(key);
+    std::size_t level = levels_.size() - 1;
+    const auto begins_behind = [&](const Level& of) {
+        return of.first_node.empty() || rest < of.first_node.front();
+    };
+    while (level > 0 && begins_behind(levels_[level])) --level;
+    Node node;
+    node.near.level = static_cast<std::int32_t>(level);
+    detail::CellRange<dim> range{{}, cells_};
+    if (level > 0) {
+        const auto& first = levels_[level].first_node;
+        const auto box = std::ranges::upper_bound(first, rest) - first.begin() - 1;
+        node.near.box = static_cast<std::int32_t>(box);
+        rest -= first[static_cast<std::size_t>(box)];
+        range = levels_[level].finder.boxes()[static_cast<std::size_t>(box)];
+    }
+    for (std::size_t d = 0; d < size_; ++d) {
+        const auto count = static_cast<std::uint64_t>(range.high[d] - range.low[d]) + 1;
+        node.place[d] = (range.low[d] + static_cast<std::int32_t>(rest % count)) * extent(level);
+        rest /= count;
+    }
+    return node;
+}
+
+template <int dim>
 auto BlockGrid<dim>::new_node(const Element& e, std::size_t n) const -> Place {
     Place node{};
     for (std::size_t d = 0; d < size_; ++d) {
