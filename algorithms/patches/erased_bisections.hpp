@@ -75,8 +75,7 @@ protected:
     ~ErasedPatches() = default;
 };
 
-/// What BisectionWalk and PatchWalk ask of a visitor, as virtual functions, and where the walk
-/// begins.
+/// A visitor of BisectionWalk and PatchWalk with virtual functions, and the begin of its walk.
 template <int dim, class Real>
 class ErasedBisectionVisitor : public detail::PatchVisitor {
 public:
@@ -84,7 +83,8 @@ public:
         const Real* values;  ///< at the corners of the element, borrowed
         int level;
         int orientation;
-        /// Where values at new nodes are means, those within it of 0 are 0; else negative.
+        /// Means at new nodes that are within it of 0 become 0; negative where values are the
+        /// field's.
         double tolerance = -1;
     };
     struct Glance {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// That each leaf of a distributed grid is on one rank.
+// Checks that each leaf of a distributed grid is on one rank alone.
 //
 // Each coarse element has a random number, and shares it out among its children, these among
 // theirs. So the numbers of the elements that ranks say they have wholly add up to those of all
@@ -85,7 +85,7 @@ public:
         }
         std::sort(claims_.begin(), claims_.end());
     }
-    /// What is wrong with the first element that is not on one rank.
+    /// Names the first element that is on several ranks or on none, and these ranks.
     std::string first_wrong(std::size_t coarse_count) const {
         for (std::uint32_t i = 0; i < coarse_count; ++i) {
             const std::string wrong = wrong_below({i}, claims_);

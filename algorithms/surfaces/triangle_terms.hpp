@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What triangles add to the measures of a surface, and the sums of that.
+// Area, volume, integrals and flux of single triangles, and exact sums of them.
 //
 // Invariant: the terms of a triangle depend on its corners, in their order around it, and on the
 // origin of the surface alone; sums of them are exact. Consequence: measures have the same bits in

@@ -46,7 +46,7 @@ public:
     /// together; BlockGrid checks the boxes
     template <int dim>
     Blocks<dim> blocks() const;
-    /// Where a field lies in the mapped files, or in a copy that this object, and copies of it,
+    /// The numbers of a field, in the mapped files or in a copy that this object, and copies of it,
     /// keep. Cells that an embedded boundary covers have no number (NaN): where there is a field
     /// "vfrac", of the free part of each cell, and Header ends with the least one to be drawn.
     /// \param field one of fields(), by its number
@@ -64,7 +64,7 @@ private:
         const std::byte* first = nullptr;
         Box stored;  ///< with ghost cells
     };
-    /// Where a text says that a record is.
+    /// The place of a record, as a Cell_H names it.
     struct OnDisk {
         std::filesystem::path file;
         std::int64_t offset = 0;

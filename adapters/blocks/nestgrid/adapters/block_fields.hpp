@@ -172,7 +172,7 @@ public:
     /// quadratic functions inside, also where levels meet, of linear ones at walls. 0 where numbers
     /// of cells are missing. Unless the rule is sharp_means, numbers are taken as those at centres.
     void corner_gradients(const Element& e, std::span<Point> out) const;
-    /// The same at a node.
+    /// The gradient at a node, with the bits that corner_gradients() has there.
     Point gradient_at(const typename BlockGrid<dim>::Node& node) const {
         return finite_gradient(node.place, reader_.grid().leaves_around(node.place, node.near));
     }
