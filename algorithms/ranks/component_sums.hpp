@@ -62,8 +62,11 @@ std::vector<double> sum_up(Ranks& ranks, const JoinedPiece& joined, std::size_t 
         for (Reader in(of_rank); in.more();) {
             const auto term = in.get<ComponentTerm>();
             const auto component = static_cast<std::size_t>(term.component);
-            if (component == components) of_all[term.term()].add(term.part);
-            result[component * term_count + term.term()] = term.part;
+            if (component == components) {
+                of_all[term.term()].add(term.part);
+            } else {
+                result[component * term_count + term.term()] = term.part;
+            }
         }
     }
     for (std::size_t term = 0; term < term_count; ++term) {

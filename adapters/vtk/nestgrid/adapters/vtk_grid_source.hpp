@@ -224,12 +224,17 @@ private:
         }
         vtkPolyData::GetData(out)->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
         if (times.size() > 1) frames_.prepare(projection_, work);
-        return frames_.at(linear_weights(times, time));
+        if (prerolls_ == nullptr || time != drawn_time_) {
+            prerolls_ = frames_.at(linear_weights(times, time));
+            drawn_time_ = time;
+        }
+        return prerolls_;
     }
 
     std::function<std::shared_ptr<Prerolls>()> make_prerolls_;
-    std::shared_ptr<Prerolls> prerolls_;  // of the grid as it was drawn last
+    std::shared_ptr<Prerolls> prerolls_;  // of the grid, or the frames, as drawn last
     Frames frames_;                       // in the place of a grid
+    double drawn_time_ = 0;               // of the frames
     std::function<std::uint64_t()> epoch_;
     std::uint64_t drawn_epoch_ = 0;
     Projection projection_;
