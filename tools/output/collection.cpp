@@ -61,7 +61,7 @@ void write_collection(const fs::path& path, const std::vector<CollectionPart>& p
         "  <Collection>\n";
     for (const CollectionPart& part : parts) {
         text += "    <DataSet timestep=\"" + number(part.time) + R"(" part="0" file=)" +
-                quoted(part.path.filename().string()) + "/>\n";
+                xml_value(part.path.filename().string()) + "/>\n";
     }
     text += "  </Collection>\n</VTKFile>\n";
     write_text(text, path);

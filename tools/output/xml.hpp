@@ -5,7 +5,7 @@
 #include <string>
 
 /// A name as the value of an attribute in XML, with its quotation marks.
-inline std::string quoted(const std::string& name) {
+inline std::string xml_value(const std::string& name) {
     std::string result;
     for (const char c : name) {
         switch (c) {

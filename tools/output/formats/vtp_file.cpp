@@ -106,7 +106,7 @@ Section data_section(const std::string& name, vtkDataSetAttributes* data) {
             if (roles.at(static_cast<std::size_t>(role)) != i) continue;
             section.attributes += std::string(" ") +
                                   vtkDataSetAttributes::GetAttributeTypeAsString(role) + "=" +
-                                  quoted(array_name);
+                                  xml_value(array_name);
         }
     }
     return section;
@@ -199,7 +199,7 @@ private:
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
             "byte_order=\"LittleEndian\" header_type=\"UInt64\"";
         if (compressor_ != nullptr) {
-            text += " compressor=" + quoted(compressor_->GetClassName());
+            text += " compressor=" + xml_value(compressor_->GetClassName());
         }
         text += ">\n  <PolyData>\n";
         std::size_t next = 0;
@@ -211,7 +211,7 @@ private:
                 offset.resize(20, ' ');
                 ++next;
                 text += "      <" + element + " type=\"" + column.type +
-                        "\" Name=" + quoted(column.name) + column.attributes +
+                        "\" Name=" + xml_value(column.name) + column.attributes +
                         " format=\"appended\" offset=\"" + offset + "\"/>\n";
             }
             text += "    </" + section.name + ">\n";
