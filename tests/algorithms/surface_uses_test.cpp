@@ -3,6 +3,8 @@
 //
 // What people need from a surface: measures with their order, attributes, reference coordinates,
 // normals, budgets, regions of interest, several isovalues, streams.
+#include <algorithm>
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -92,6 +94,25 @@ TYPED_TEST(Uses, MeasuresConvergeWithOrderTwo) {
         }
         EXPECT_NEAR(norm(m.total.area_vector), 0, 1e-12);
     }
+}
+
+/// The order of triangles, and the corner that each begins with, change no bit.
+TYPED_TEST(Uses, MeasuresDoNotDependOnTheOrderOfTriangles) {
+    auto grid = TypeParam::grids()[0];
+    uniform(grid, 3 * TypeParam::steps);
+    const auto field = scalar_and_more(grid);
+    Surface<3> surface = isosurface(grid, field, 0.0).surface;
+    const SurfaceMeasurement drawn = measure_surface(surface);
+    const double through = flux(surface, drawn)[0];
+    std::mt19937 random(1);
+    std::shuffle(surface.simplices.begin(), surface.simplices.end(), random);
+    for (auto& t : surface.simplices) std::rotate(t.begin(), t.begin() + random() % 3, t.end());
+    const SurfaceMeasurement turned = measure_surface(surface);
+    EXPECT_EQ(turned.total.area, drawn.total.area);
+    EXPECT_EQ(turned.total.area_vector, drawn.total.area_vector);
+    EXPECT_EQ(turned.total.volume, drawn.total.volume);
+    EXPECT_EQ(turned.total.integrals, drawn.total.integrals);
+    EXPECT_EQ(flux(surface, turned)[0], through);
 }
 
 TYPED_TEST(Uses, AttributesAndReferenceCoordinatesSayWhereTheTrianglesAre) {
