@@ -30,7 +30,11 @@ public:
     void add(std::size_t level, const Rule& rule, std::span<const std::size_t> nodes,
              float reach = 0) {
         if (level >= levels_.size()) levels_.resize(level + 1);
-        Level& to = levels_[level];
+        std::deque<Part>& parts = levels_[level];
+        if (parts.empty() || parts.back().rules.size() == Part::most) {
+            parts.emplace_back(nodes.size(), wide_);
+        }
+        Part& to = parts.back();
         to.rules.push_back(&rule);
         if (reach > 0) {
             to.reach.resize(to.rules.size() - 1);
@@ -53,34 +57,48 @@ public:
 
     /// Calls function(rule, numbers, reach) for the splits of elements on a level.
     template <class Function>
-    void for_each(std::size_t level, Function&& function) const {
-        const Level& from = levels_[level];
-        auto low = from.low.begin();
-        auto high = from.high.begin();
+    void for_each(std::size_t level, const Function& function) const {
+        for (const Part& part : levels_[level]) for_each_of(part, function);
+    }
+
+private:
+    /// Splits that follow each other, in arrays that do not grow where all have as many nodes.
+    struct Part {
+        static constexpr std::size_t most = 250;  // no power of two: equal places in caches
+
+        /// \param nodes of the first split
+        Part(std::size_t nodes, bool wide) {
+            rules.reserve(most);
+            low.reserve(most * nodes);
+            if (wide) high.reserve(most * nodes);
+        }
+        std::vector<const Rule*> rules;
+        std::vector<std::uint32_t> low;
+        std::vector<std::uint8_t> high;
+        std::vector<float> reach;  // by split; 0 for splits behind its end
+    };
+
+    template <class Function>
+    void for_each_of(const Part& part, const Function& function) const {
+        auto low = part.low.begin();
+        auto high = part.high.begin();
         std::array<std::size_t, max_corners + max_new_nodes> nodes;
-        for (std::size_t s = 0; s < from.rules.size(); ++s) {
-            const Rule* const rule = from.rules[s];
+        for (std::size_t s = 0; s < part.rules.size(); ++s) {
+            const Rule& rule = *part.rules[s];
             const std::size_t count =
-                static_cast<std::size_t>(rule->corner_count()) + rule->new_nodes.size();
+                static_cast<std::size_t>(rule.corner_count()) + rule.new_nodes.size();
             for (std::size_t i = 0; i < count; ++i) {
                 std::uint64_t node = *low++;
                 if (wide_) node |= std::uint64_t{*high++} << 32U;
                 nodes[i] = static_cast<std::size_t>(node);
             }
-            function(*rule, std::span<const std::size_t>(nodes).first(count),
-                     s < from.reach.size() ? from.reach[s] : 0.0F);
+            function(rule, std::span<const std::size_t>(nodes).first(count),
+                     s < part.reach.size() ? part.reach[s] : 0.0F);
         }
     }
 
-private:
-    struct Level {
-        std::deque<const Rule*> rules;
-        std::deque<std::uint32_t> low;
-        std::deque<std::uint8_t> high;
-        std::deque<float> reach;  // by split; 0 for splits behind its end
-    };
     bool wide_;
-    std::vector<Level> levels_;
+    std::vector<std::deque<Part>> levels_;
 };
 
 }  // namespace nestgrid::engine
