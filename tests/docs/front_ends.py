@@ -25,7 +25,6 @@ REASONS = {
     "g": "by C++ only: it is a function of the caller's own types",
     "h": "by Ctrl-C, or by the next request",
     "i": "printed with every surface",
-    "j": "it reads no data of higher degree",
 }
 FRONT_ENDS = ["C++", "C, Fortran", "program", "page", "Python", "VTK", "ParaView"]
 # Of each feature one cell for each front end: a name, or the letter of a reason.
@@ -54,7 +53,7 @@ TABLE = {
     "How finely": {
         "a threshold": "threshold threshold --threshold threshold threshold SetThreshold Threshold",
         "an error that is kept": "error_indicator error --error error error SetError Error",
-        "an error of positions": "position_error position_error --position-error j position_error SetProjection "
+        "an error of positions": "position_error position_error --position-error position_error position_error SetProjection "
         "PositionError",
         "a distance, estimated": "slope_deviations NESTGRID_SLOPE --distance distance distance SetIndicator "
         "Distance",
@@ -73,7 +72,7 @@ TABLE = {
     },
     "How, and what is kept": {
         "normals": "normals normals --no-normals normals normals SetNormals Normals",
-        "caps": "cap cap --cap a cap SetCap Cap",
+        "caps": "cap cap --cap cap cap SetCap Cap",
         "vertices at nodes": "at_nodes at_nodes --at-nodes a at_nodes SetAtNodes AtNodes",
         "cuts on finest data": "Cuts finest_cuts --cuts a cuts SetFinestCuts Cuts",
         "the element of a triangle": "elements elements --elements outlines elements SetElements a",

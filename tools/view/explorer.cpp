@@ -76,6 +76,7 @@ Explorer::Explorer(ExploredField field, const Executor& executor)
     if (const auto polynomials = field_.frames[0]->high_order({.executor = executor})) {
         // Curved cells of degree 1 are drawn as polynomials, too.
         degree_ = std::max({2, polynomials->greatest_degree(), polynomials->geometry_degree()});
+        curved_ = polynomials->geometry_degree() > 1;
     }
     if (field_.range) {
         least_ = (*field_.range)[0];
@@ -107,7 +108,8 @@ std::string Explorer::info() const {
         .number(static_cast<double>(field_.samples))
         .key("nodes")
         .number(static_cast<double>(nodes_));
-    text.key("degree").number(degree_).key("preroll_seconds").number(preroll_seconds_);
+    text.key("degree").number(degree_).key("curved").boolean(curved_);
+    text.key("preroll_seconds").number(preroll_seconds_);
     return text.close('}').text();
 }
 
@@ -127,6 +129,9 @@ Prerolls& Explorer::moment_at(const FrameRequest& request) {
 
 FrameCriteria Explorer::criteria_for(const FrameRequest& request, Prerolls& moment,
                                      const Work& work, WatchedSteps& steps) const {
+    if (request.position_error > 0 && !curved_) {
+        throw InvalidInput("the elements are straight: leave out position_error");
+    }
     if (degree_ > 1) return polynomials_for(request, moment, work, steps);
     const std::vector<double> isovalues(request.isovalue ? 1 : 0, request.isovalue.value_or(0));
     Projection projection{.indicator = request.indicator, .lens = request.lens};
@@ -252,9 +257,11 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
     if (request.distance > 0) triangles_of_distance_ = drawn.triangles();
     ErrorBounds bounds;
     double visited = 0;
+    double position_bound = 0;
     double distance = std::numeric_limits<double>::quiet_NaN();
     for (const FramePart& part : drawn.parts) {
         bounds.add_bounds(part.drawn);
+        position_bound = std::max(position_bound, part.drawn.position_bound);
         if (std::isfinite(part.distance)) distance = part.distance;
         visited += static_cast<double>(part.drawn.counts.visited);
     }
@@ -264,7 +271,7 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
     reply.header.key("triangles").number(static_cast<double>(drawn.triangles()));
     reply.header.key("visited").number(visited).key("error_bound").number(bounds.error_bound);
     reply.header.key("bound_says_nothing").boolean(bounds.bound_says_nothing());
-    reply.header.key("distance").number(distance);
+    reply.header.key("position_bound").number(position_bound).key("distance").number(distance);
     reply.header.key("seconds").number(seconds).key("draws").number(drawn.draws);
     reply.header.key("parts").open('[');
     for (const FramePart& part : drawn.parts) write_part(reply, part, request);

@@ -86,6 +86,7 @@ private:
     const Executor* executor_;
     std::size_t nodes_ = 0;  // of a frame
     int degree_ = 1;
+    bool curved_ = false;
     double least_ = 0;  // of all frames
     double greatest_ = 0;
     std::array<double, 2> usual_range_{};  // of the values, or of nearly all

@@ -33,8 +33,11 @@ auto FrameDrawing::with(double threshold, const Function& function) const {
         });
     }
     const HighOrder& data = *criteria_.polynomials;
-    const VirtualRefinement fine(
-        data, {.tolerance = std::max(threshold, data.least_tolerance()), .lens = request_.lens});
+    const double positions = request_.position_error;
+    const VirtualRefinement fine(data,
+                                 {.tolerance = std::max(threshold, data.least_tolerance(positions)),
+                                  .lens = request_.lens,
+                                  .position_tolerance = positions});
     const Hierarchy<double>& hierarchy = fine;
     return function(hierarchy, StoppedBy{fine.criterion(), fine.bounds()});
 }
@@ -59,7 +62,7 @@ std::vector<FramePart> FrameDrawing::draw(double threshold) const {
 bool FrameDrawing::fits(double threshold) const {
     steps_.begin("Searching for the detail that keeps within the triangles");
     bool waits = true;
-    IsosurfaceOptions options;
+    IsosurfaceOptions options{.cap = request_.cap};
     options.progress = [&](const TraversalCounts&) { return waits = steps_.tell(); };
     const bool fit = with(threshold, [&](const auto& hierarchy, const StoppedBy& by) {
         std::uint64_t most = request_.triangles;
@@ -82,7 +85,7 @@ FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
                                         const StoppedBy& by) const {
     const bool normals = request_.normals != NormalType::none;
     const bool quickly = request_.moving || request_.collapses();
-    IsosurfaceOptions options = watched({.elements = request_.outlines});
+    IsosurfaceOptions options = watched({.cap = request_.cap, .elements = request_.outlines});
     options.normals = normals && !quickly;
     // Linear cuts keep an error.
     const bool keeps =

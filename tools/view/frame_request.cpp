@@ -14,8 +14,8 @@ namespace nestgrid::view {
 namespace {
 
 constexpr const char* known_keys =
-    "isovalue, axis, at, plane, threshold, triangles, error, distance, collapse, motion, "
-    "indicator, lens, finest, coarsest, slope, time, normals and outlines";
+    "isovalue, axis, at, plane, threshold, triangles, error, position_error, distance, collapse, "
+    "cap, motion, indicator, lens, finest, coarsest, slope, time, normals and outlines";
 
 std::string names_of(const std::vector<const IndicatorKind*>& kinds) {
     std::string names;
@@ -78,6 +78,8 @@ void take_detail(Entries& entries, FrameRequest& request) {
             "the request has several of threshold, triangles, error and distance: leave out all "
             "but one");
     }
+    entries.take("position_error",
+                 [&](auto key, auto text) { request.position_error = positive_number(key, text); });
 }
 
 bool is_on(std::string_view key, std::string_view text) {
@@ -93,7 +95,11 @@ void check_detail(const FrameRequest& request, bool names_indicator) {
     if (request.distance > 0 && !request.isovalue) {
         throw InvalidInput("a distance is that of an isosurface: give isovalue");
     }
+    if (request.cap && !request.isovalue) {
+        throw InvalidInput("a cap closes an isosurface: give isovalue");
+    }
     if (!request.collapse) return;
+    if (request.cap) throw InvalidInput("caps are not collapsed: leave out cap or collapse");
     if (!(request.error > 0) || !request.isovalue) {
         throw InvalidInput("collapse needs the error of an isosurface that is to be kept");
     }
@@ -158,6 +164,7 @@ FrameRequest parse_request(std::string_view text) {
                                                      {"float32", NormalType::float32}}});
     });
     entries.take("outlines", [&](auto key, auto value) { request.outlines = is_on(key, value); });
+    entries.take("cap", [&](auto key, auto value) { request.cap = is_on(key, value); });
     entries.take("collapse", [&](auto key, auto value) { request.collapse = is_on(key, value); });
     entries.require_empty(known_keys);
     if (!request.isovalue && !request.plane) {

@@ -34,6 +34,9 @@ struct FrameRequest {
     double error = 0;  ///< error=NUMBER that is kept, in units of the data; 0 where there is none
     double distance =
         0;  ///< distance=NUMBER, an estimate in units of length; 0 where there is none
+    double position_error = 0;          ///< position_error=NUMBER, of curved leaves, in units of
+                                        ///< length; 0: as VirtualOptions::position_tolerance
+    bool cap = false;                   ///< cap=on: isosurfaces are closed at the boundary
     bool collapse = false;              ///< collapse=on: fewer triangles of the same error
     bool moving = false;                ///< motion=moving: the goal is missed by a few percent; or
                                         ///< motion=settled: it is not exceeded

@@ -77,7 +77,20 @@ try {
   check(link.includes('collapse=on') && link.includes('detail=error'), `the address tells nothing: ${link}`);
   await opened.go(new URL(link).hash);
   check((await frame()).triangles === collapsed.triangles, 'the address brings another picture');
+  check((await whyOf('cap')) === 'a collapsed surface stays open', 'a collapsed surface has a cap');
   await click('collapse');
+  check(await page.$eval('#positions-controls', (controls) => controls.hidden), 'a volume has curved elements');
+
+  // A cap closes the surface, where it meets the boundary.
+  await slide('isovalue', 15);
+  const open = await frame();
+  await click('cap');
+  const closed = await frame();
+  check(closed.request.includes('cap=on'), `no cap is asked for: ${closed.request}`);
+  check(closed.triangles > open.triangles, `${closed.triangles} triangles with a cap, ${open.triangles} without`);
+  check(page.url().includes('cap=on'), `the address tells nothing of the cap: ${page.url()}`);
+  await click('cap');
+  await slide('isovalue', 400);
 
   // A distance is about kept; while something moves, the number of triangles is.
   await click('by-distance');

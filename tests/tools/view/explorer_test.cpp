@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Frames of the interactive page: the surfaces of the library, within the numbers of triangles that
-// were asked for, and a sentence for each request that is none.
+// were asked for.
 #include <gtest/gtest.h>
 
 #include <explored_samples.hpp>
@@ -15,7 +15,6 @@
 #include <nestgrid/algorithms/swept_key_frames.hpp>
 #include <nestgrid/algorithms/wavelet_indicator.hpp>
 
-#include "degree_world.hpp"
 #include "families.hpp"
 #include "frame_of.hpp"
 #include "refusal.hpp"
@@ -26,53 +25,6 @@ using namespace nestgrid_test;
 using namespace nestgrid::view;
 
 namespace {
-
-std::string text_of(double x) {
-    std::array<char, 40> digits{};
-    std::snprintf(digits.data(), digits.size(), "%.17g", x);
-    return digits.data();
-}
-
-std::vector<float> floats_of(std::span<const Point> points) {
-    std::vector<float> result;
-    for (const Point& x : points) {
-        for (const double c : x) result.push_back(static_cast<float>(c));
-    }
-    return result;
-}
-
-template <class Simplices>
-std::vector<std::uint32_t> indices_of(const Simplices& simplices) {
-    std::vector<std::uint32_t> result;
-    for (const auto& simplex : simplices)
-        result.insert(result.end(), simplex.begin(), simplex.end());
-    return result;
-}
-
-/// The surface of arrays of a frame.
-template <int dimension>
-Surface<dimension> surface_of(const std::vector<float>& positions,
-                              const std::vector<std::uint32_t>& indices) {
-    constexpr auto corners = static_cast<std::size_t>(dimension);
-    Surface<dimension> surface;
-    for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
-        surface.vertices.push_back({positions[i], positions[i + 1], positions[i + 2]});
-    }
-    for (std::size_t i = 0; i + corners <= indices.size(); i += corners) {
-        auto& simplex = surface.simplices.emplace_back();
-        for (std::size_t k = 0; k < corners; ++k) simplex[k] = indices[i + k];
-    }
-    return surface;
-}
-
-/// A part of a frame has the vertices and triangles (segments) of a surface.
-template <int dimension>
-void expect_part(const Frame& frame, const std::string& kind, const Surface<dimension>& surface) {
-    expect_same_simplices(
-        surface_of<dimension>(frame.array<float>(kind, "positions"),
-                              frame.array<std::uint32_t>(kind, "indices")),
-        surface_of<dimension>(floats_of(surface.vertices), indices_of(surface.simplices)));
-}
 
 /// A field that borrows a grid and values of the test.
 template <class Grid>
@@ -228,53 +180,6 @@ TEST(SettledFrames, AreTheFinestWithinTheTriangles) {
             frame_of(volume.explorer, what + "&threshold=" + text_of(less)).number("triangles"),
             goal)
             << what;
-    }
-}
-
-/// Frames of data of higher degree are surfaces of the polynomials within the error, whatever the
-/// page calls it.
-TEST(Polynomials, AreDrawnWithinErrorsAndNumbersOfTriangles) {
-    const DegreeWorld<3> world(
-        {.levels = 1, .least_degree = 2, .greatest_degree = 4, .seed = 5},
-        [](const Point& x) { return std::sin(3 * x[0]) + std::cos(4 * x[1]) * x[2]; });
-    const DegreeField<3> field(world);
-    const SequentialExecutor executor;
-    const std::shared_ptr<const DegreeWorld<3>> shared(std::shared_ptr<const void>(), &world);
-    ExploredField explored = still_field(shared, field);
-    Explorer explorer(std::move(explored), executor);
-    EXPECT_NE(explorer.info().find("\"degree\":4"), std::string::npos);
-
-    const HighOrder data(world, field);
-    const Plane plane({0.1, 0.2, 0.3}, {1, 0.2, 0.1});
-    const std::string asked = "isovalue=0.1&plane=0.1,0.2,0.3,1,0.2,0.1";
-    for (const double error : {0.3, 0.02}) {
-        const VirtualRefinement fine(data, {.tolerance = error});
-        const Projection within = under(fine.criterion(), fine.bounds());
-        const auto surface = isosurface<3>(fine, 0.1, within);
-        const auto cut = slice(fine, plane, within);
-        for (const char* const held : {"error", "threshold"}) {
-            const Frame frame =
-                frame_of(explorer, asked + "&" + held + "=" + text_of(error) + "&outlines=on");
-            expect_part(frame, "isosurface", surface.surface);
-            expect_part(frame, "slice", cut.surface);
-            EXPECT_LE(frame.number("error_bound"), (error + data.jump()) * (1 + 1e-6));
-        }
-    }
-    for (const double goal : {2000.0, 20000.0}) {
-        const Frame frame =
-            frame_of(explorer, asked + "&triangles=" + text_of(goal) + "&normals=int8");
-        EXPECT_LE(frame.number("triangles"), goal);
-        EXPECT_GE(frame.number("triangles"), goal / 2);
-        const double least = frame.number("threshold");
-        const Frame again = frame_of(explorer, asked + "&error=" + text_of(least));
-        EXPECT_EQ(again.number("triangles"), frame.number("triangles"));
-    }
-    const double without = frame_of(explorer, "isovalue=0.1&error=0.3").number("triangles");
-    const Frame lens = frame_of(explorer, "isovalue=0.1&error=0.3&lens=0.1,0.2,0.3,0.1&slope=1");
-    EXPECT_GT(lens.number("triangles"), 2 * without);
-    for (const char* const none : {"distance=0.1", "error=0.1&collapse=on"}) {
-        expect_refused([&] { frame_of(explorer, std::string("isovalue=0.1&") + none); },
-                       "data of higher degree are drawn within an error or a number of triangles");
     }
 }
 
@@ -592,96 +497,6 @@ TEST(Frames, ForWhichNobodyWaitsEndAtOnceAndLeaveNoTrace) {
         expect_same_bits(frame.array<float>("isosurface", "positions"),
                          expected.array<float>("isosurface", "positions"), "vertices");
     }
-}
-
-TEST(Requests, ThatAreMalformedAreRefusedInOneSentence) {
-    const std::vector<std::array<std::string, 2>> cases{
-        {"", "nothing is to be drawn"},
-        {"isovalue=", "isovalue is no finite number"},
-        {"isovalue=high", "isovalue is no finite number: 'high'"},
-        {"isovalue=nan", "no finite number"},
-        {"isovalue=inf", "no finite number"},
-        {"isovalue=1e999", "no finite number"},
-        {"isovalue=0x10", "no finite number"},
-        {"isovalue=1,2", "no finite number"},
-        {"isovalue= 1", "no finite number"},
-        {"isovalue=1 ", "no finite number"},
-        {"isovalue=1%20", "no finite number"},
-        {"isovalue=1&isovalue=2", "twice"},
-        {"isovalue", "key=value"},
-        {"isovalue=1&&", "key=value"},
-        {"isovalue=1&colour=red", "knows only"},
-        {"isovalue=1&threshold=-1", "threshold is negative"},
-        {"isovalue=1&threshold=a", "threshold is no finite number"},
-        {"isovalue=1&triangles=0", "triangles is no count"},
-        {"isovalue=1&triangles=1.5", "triangles is no count"},
-        {"isovalue=1&triangles=1e10", "triangles is no count"},
-        {"isovalue=1&triangles=100&threshold=1", "leave out all but one"},
-        {"isovalue=1&error=0", "error is not positive"},
-        {"isovalue=1&error=-1", "error is not positive"},
-        {"isovalue=1&error=1%", "error is no finite number"},
-        {"isovalue=1&distance=0", "distance is not positive"},
-        {"isovalue=1&distance=nan", "distance is no finite number"},
-        {"isovalue=1&distance=1mm", "distance is no finite number"},
-        {"isovalue=1&error=1&distance=1", "leave out all but one"},
-        {"isovalue=1&error=1&triangles=10", "leave out all but one"},
-        {"isovalue=1&error=1&indicator=offset", "indicators of their own"},
-        {"axis=x&at=1&distance=1", "that of an isosurface"},
-        {"isovalue=1&collapse=on", "collapse needs the error"},
-        {"isovalue=1&distance=1&collapse=on", "collapse needs the error"},
-        {"axis=x&at=1&error=1&collapse=on", "collapse needs the error"},
-        {"isovalue=1&error=1&collapse=yes", "collapse is none of on, off"},
-        {"isovalue=1&error=1&collapse=on&outlines=on", "no outlines"},
-        {"isovalue=1&motion=fast", "motion is none of moving, settled"},
-        {"isovalue=1&indicator=best", "indicator is none of offset"},
-        {"isovalue=1&normals=yes", "normals is none of"},
-        {"isovalue=1&outlines=1", "outlines is none of"},
-        {"axis=x", "axis and at"},
-        {"at=1", "axis and at"},
-        {"axis=w&at=1", "axis is none of x, y, z"},
-        {"axis=x&at=", "at is no finite number"},
-        {"axis=x&at=1&plane=0,0,0,1,0,0", "plane alone"},
-        {"plane=0,0,0,1,0", "not 6 finite numbers"},
-        {"plane=0,0,0,1,0,0,0", "not 6 finite numbers"},
-        {"plane=0,0,0,0,0,0", "normal 0"},
-        {"isovalue=1&lens=0,0,0", "not 4 finite numbers"},
-        {"isovalue=1&lens=0,0,0,-1", "negative radius"},
-        {"isovalue=1&slope=1", "need a lens"},
-        {"isovalue=1&lens=0,0,0,1&slope=-1", "slope is negative"},
-        {"isovalue=1&lens=0,0,0,1&finest=2&coarsest=1", "coarsest is below finest"},
-        {"isovalue=1&time=now", "time is no finite number"},
-        {"isovalue=" + std::string(3000, '1'), "longer than"},
-        {"isovalue=\x1b[31m" + std::string(60, 'x'), "'?[31mxxx"}};
-    for (const auto& [request, part] : cases) {
-        const std::string sentence = refusal([&text = request] { parse_request(text); });
-        EXPECT_NE(sentence.find(part), std::string::npos) << request << ": " << sentence;
-        EXPECT_LT(sentence.size(), 200U) << sentence;
-        EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
-    }
-}
-
-TEST(Requests, SayWhatTheyAskFor) {
-    const FrameRequest r = parse_request(
-        "isovalue=-1.5e-3&axis=y&at=2&triangles=1e5&motion=moving&indicator=numerical&"
-        "lens=1,2,3,4&finest=0.1&coarsest=8&slope=2&time=3&normals=int8&outlines=on");
-    EXPECT_EQ(r.isovalue, -1.5e-3);
-    EXPECT_EQ(r.plane->through, (Point{0, 2, 0}));
-    EXPECT_EQ(r.plane->normal, (Point{0, 1, 0}));
-    EXPECT_EQ(r.triangles, 100000U);
-    EXPECT_TRUE(r.moving);
-    EXPECT_EQ(r.indicator, "numerical");
-    EXPECT_EQ(r.lens->distance({1, 2, 3}), 0);
-    EXPECT_EQ(r.lens->distance({1, 2, 9}), 2);
-    EXPECT_EQ(r.lens->finest, 0.1);
-    EXPECT_EQ(r.lens->coarsest, 8);
-    EXPECT_EQ(r.lens->slope, 2);
-    EXPECT_EQ(r.time, 3);
-    EXPECT_EQ(r.normals, NormalType::int8);
-    EXPECT_TRUE(r.outlines);
-    EXPECT_EQ(parse_request("isovalue=1&distance=0.5").distance, 0.5);
-    const FrameRequest collapsed = parse_request("isovalue=1&error=0.25&collapse=on");
-    EXPECT_EQ(collapsed.error, 0.25);
-    EXPECT_TRUE(collapsed.collapse);
 }
 
 }  // namespace

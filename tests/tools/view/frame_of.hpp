@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A frame of an Explorer as a page reads it.
+// A frame of an Explorer as a page reads it, and the surfaces in it.
 #pragma once
 
+#include <array>
+#include <cstdio>
 #include <cstring>
 #include <span>
 #include <stdexcept>
@@ -11,6 +13,8 @@
 #include <vector>
 
 #include <explorer.hpp>
+
+#include "same_surface.hpp"
 
 namespace nestgrid_test {
 
@@ -67,6 +71,54 @@ private:
 
 inline Frame frame_of(nestgrid::view::Explorer& explorer, const std::string& request) {
     return Frame(explorer.frame(request));
+}
+
+inline std::string text_of(double x) {
+    std::array<char, 40> digits{};
+    std::snprintf(digits.data(), digits.size(), "%.17g", x);
+    return digits.data();
+}
+
+inline std::vector<float> floats_of(std::span<const nestgrid::Point> points) {
+    std::vector<float> result;
+    for (const nestgrid::Point& x : points) {
+        for (const double c : x) result.push_back(static_cast<float>(c));
+    }
+    return result;
+}
+
+template <class Simplices>
+std::vector<std::uint32_t> indices_of(const Simplices& simplices) {
+    std::vector<std::uint32_t> result;
+    for (const auto& simplex : simplices)
+        result.insert(result.end(), simplex.begin(), simplex.end());
+    return result;
+}
+
+/// The surface of arrays of a frame.
+template <int dimension>
+nestgrid::Surface<dimension> surface_of(const std::vector<float>& positions,
+                                        const std::vector<std::uint32_t>& indices) {
+    constexpr auto corners = static_cast<std::size_t>(dimension);
+    nestgrid::Surface<dimension> surface;
+    for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+        surface.vertices.push_back({positions[i], positions[i + 1], positions[i + 2]});
+    }
+    for (std::size_t i = 0; i + corners <= indices.size(); i += corners) {
+        auto& simplex = surface.simplices.emplace_back();
+        for (std::size_t k = 0; k < corners; ++k) simplex[k] = indices[i + k];
+    }
+    return surface;
+}
+
+/// A part of a frame has the vertices and triangles (segments) of a surface.
+template <int dimension>
+void expect_part(const Frame& frame, const std::string& kind,
+                 const nestgrid::Surface<dimension>& surface) {
+    expect_same_simplices(
+        surface_of<dimension>(frame.array<float>(kind, "positions"),
+                              frame.array<std::uint32_t>(kind, "indices")),
+        surface_of<dimension>(floats_of(surface.vertices), indices_of(surface.simplices)));
 }
 
 }  // namespace nestgrid_test

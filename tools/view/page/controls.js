@@ -46,10 +46,11 @@ export class Controls {
     this.#slider('threshold', (t) => ({ threshold: t === 0 ? 0 : this.#thresholdScale.value(t) }));
     this.#slider('error', (t) => ({ error: this.#errorScale.value(t) }));
     this.#slider('distance', (t) => ({ distance: this.#distanceScale.value(t) }));
+    this.#slider('positions', (t) => ({ positions: this.#distanceScale.value(t) }));
     this.#slider('slice-at', (t) => ({ at: this.#placeScale.value(t) }));
     this.#slider('lens-radius', (t) => ({ radius: this.#radiusScale.value(t) }));
     this.#slider('time', (t) => ({ time: this.#timeAt(t) }));
-    for (const id of ['surface', 'outlines', 'collapse']) {
+    for (const id of ['surface', 'cap', 'outlines', 'collapse']) {
       byId(id).addEventListener('change', (e) => change({ [id]: e.target.checked }, 'settled'));
     }
     for (const held of details) {
@@ -93,6 +94,7 @@ export class Controls {
     byId('surface').checked = state.surface;
     byId('outlines').checked = state.outlines;
     byId('collapse').checked = state.collapse;
+    byId('cap').checked = state.cap;
     const held = heldAt(state);
     for (const detail of details) {
       byId(`by-${detail}`).checked = held === detail;
@@ -103,12 +105,14 @@ export class Controls {
     byId('slice-controls').hidden = state.slice === 'none';
     byId('slice-face').hidden = state.slice !== 'view';
     byId('lens-controls').hidden = state.lens === 'off';
+    byId('positions-controls').hidden = !info.curved;
     byId('time-section').hidden = info.times.length < 2;
     this.#place('isovalue', this.#valueScale.position(state.isovalue));
     this.#place('triangles', trianglesScale.position(state.triangles));
     this.#place('threshold', this.#thresholdScale.position(state.threshold));
     this.#place('error', this.#errorScale.position(state.error));
     this.#place('distance', this.#distanceScale.position(state.distance));
+    this.#place('positions', this.#distanceScale.position(state.positions));
     this.#place('slice-at', this.#placeScale.position(state.at));
     this.#place('lens-radius', this.#radiusScale.position(state.radius));
     this.#place('time', linear(info.times[0], info.times.at(-1)).position(state.time));
@@ -130,6 +134,7 @@ export class Controls {
     setControl(byId('indicator'), degree || (all ? 'all detail is kept' : own));
     setControl(byId('by-distance'), degree || flat);
     setControl(byId('collapse'), degree || flat);
+    setControl(byId('cap'), collapses(state) ? 'a collapsed surface stays open' : '');
     if (collapses(state)) setWhy('outlines-section', 'Collapsed triangles have no elements.');
   }
 
@@ -147,6 +152,7 @@ export class Controls {
     this.#say('threshold', 'threshold-text', this.#thresholdText(state, info));
     this.#say('error', 'error-text', `at most ${this.#shareText(state.error, info)}`);
     this.#say('distance', 'distance-text', `about ${length(state.distance)}`);
+    this.#say('positions', 'positions-text', `at most ${length(state.positions)}`);
     this.#say('slice-at', 'slice-text', `${place} ${length(state.at)}`);
     this.#say('lens-radius', 'lens-text', `radius ${length(state.radius)}`);
     this.#say('time', 'time-text', `time ${readable(state.time)}`);

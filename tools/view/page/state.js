@@ -16,11 +16,13 @@ export function defaultState(info) {
   return {
     surface: true,
     isovalue: info.isovalue,
+    cap: false,
     detail: 'triangles',
     triangles: 50000,
     threshold: 0.01 * (info.greatest - info.least),
     error: 0.02 * (info.greatest - info.least),
     distance: diagonalOf(info.box) / 500,
+    positions: diagonalOf(info.box) / 500,
     collapse: false,
     indicator: 'offset',
     outlines: false,
@@ -90,7 +92,7 @@ export function stateFromAddress(hash, start, indicators = []) {
   }
   if (state.triangles < 1) state.triangles = start.triangles;
   if (state.threshold < 0) state.threshold = start.threshold;
-  for (const key of ['error', 'distance']) {
+  for (const key of ['error', 'distance', 'positions']) {
     if (!(state[key] > 0)) state[key] = start[key];
   }
   if (state.radius < 0) state.radius = start.radius;
@@ -137,6 +139,11 @@ export function collapses(state) {
   return state.collapse && state.surface && state.detail === 'error';
 }
 
+/** Whether the isosurface is closed at the boundary: one that is collapsed stays open. */
+export function caps(state) {
+  return state.cap && state.surface && !collapses(state);
+}
+
 /** Errors and distances have indicators of their own. */
 function detailOf(state) {
   const held = heldAt(state);
@@ -162,6 +169,8 @@ export function requestOf(state, info, motion) {
     entries.push(`lens=${[...state.centre, state.radius].join(',')}`, 'slope=1');
   }
   if (info.times.length > 1) entries.push(`time=${state.time}`);
+  if (caps(state)) entries.push('cap=on');
+  if (info.curved) entries.push(`position_error=${state.positions}`);
   if (state.outlines && !collapses(state)) entries.push('outlines=on');
   return entries.join('&');
 }
