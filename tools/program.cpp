@@ -85,7 +85,7 @@ int run_program(int argc, char** argv) {
     add_text(app, "zsh-completion", zsh_completion);
     try {
         app.parse(argc, argv);
-        refuse_empty_lists(app);
+        refuse_empty_lists(app, std::span(argv, static_cast<std::size_t>(argc)));
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& error) {

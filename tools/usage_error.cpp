@@ -95,11 +95,24 @@ std::string usage_error(const CLI::ParseError& error, const CLI::App& program) {
     return value ? wrong_value(error, command) : error.what();
 }
 
-void refuse_empty_lists(const CLI::App& program) {
+void refuse_empty_lists(const CLI::App& program, std::span<const char* const> words) {
     for (const CLI::Option* option : given_command(program).get_options()) {
-        if (option->get_delimiter() == '\0') continue;
+        const char comma = option->get_delimiter();
+        if (comma == '\0') continue;
+        const std::string name = option->get_name();
         for (const std::string& item : option->results()) {
-            if (item.empty()) throw CLI::ConversionError("", option->get_name());
+            if (item.empty()) throw CLI::ConversionError("", name);
+        }
+        bool follows = false;
+        for (const std::string word : words) {
+            const bool joined = word.starts_with(name + "=");
+            const std::string list = joined ? word.substr(name.size() + 1) : word;
+            const std::string between = comma + list + comma;
+            if ((joined || follows) && between.find(std::string(2, comma)) != std::string::npos) {
+                throw CLI::ValidationError(
+                    name, "nothing is between two commas, or beside one, in '" + list + "'");
+            }
+            follows = option->check_name(word);
         }
     }
 }

@@ -82,6 +82,12 @@ refused 2 'a command is missing'
 refused 2 "has no option --qqqqqq \(" isosurface v.vti --qqqqqq
 refused 2 "takes V,V,..., not 'abc'" isosurface v.vti --value abc
 refused 2 'takes V,V,..., but nothing follows' isosurface v.vti --value
+for list in 1,,2 ,1 1,; do
+    for word in --value=$list "--value $list"; do
+        refused 2 "--value: nothing is between two commas, or beside one, in '$list'" isosurface v.vti $word
+    done
+done
+refused 2 "--times: nothing is between" isosurface v.vti v.vti --value 95 --times 0,,1
 refused 2 '--at is given twice' slice v.vti --axis z --at 1 --at 2
 refused 2 'takes X,Y,Z,NX,NY,NZ' slice v.vti --plane 1,2,3
 refused 2 "value is required: the values of 'v.vti' are from [0-9.]+ to [0-9.]+, try --value [0-9]+ \(" isosurface v.vti
