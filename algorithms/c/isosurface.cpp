@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nestgrid/algorithms/isosurface.h>
 
+#include <algorithm>
+#include <span>
 #include <type_traits>
+#include <vector>
 
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/join_pieces.hpp>
@@ -17,16 +20,19 @@ namespace {
 using namespace nestgrid;
 
 /// Draws on a grid of either dimension: calls
-/// of_dimension(std::integral_constant<int, dimension>, prerolls, projection, options, work).
-template <class Real, class Draw>
-int draw(const Hierarchy<Real>& hierarchy, const Asked& asked, nestgrid_surface& out,
-         const Draw& of_dimension) {
+/// of_dimension(std::integral_constant<int, dimension>, prerolls, projection, options, work), and
+/// hand_out(what it returns, projection).
+template <class Real, class Draw, class HandOut>
+int draw_any(const Hierarchy<Real>& hierarchy, const Asked& asked, const Draw& of_dimension,
+             const HandOut& hand_out) {
     const Projection projection = asked.projection(hierarchy, true);
     const auto in = [&](auto dimension) {
-        auto drawn = asked.with_prerolls(hierarchy, [&](Prerolls& prerolls, const Work& work) {
-            return of_dimension(dimension, prerolls, projection, asked.how_to_draw(), work);
-        });
-        hand_over(std::move(drawn), asked.part(), out);
+        hand_out(asked.with_prerolls(hierarchy,
+                                     [&](Prerolls& prerolls, const Work& work) {
+                                         return of_dimension(dimension, prerolls, projection,
+                                                             asked.how_to_draw(), work);
+                                     }),
+                 projection);
     };
     if (hierarchy.facts().dimension == 2) {
         in(std::integral_constant<int, 2>{});
@@ -34,6 +40,35 @@ int draw(const Hierarchy<Real>& hierarchy, const Asked& asked, nestgrid_surface&
         in(std::integral_constant<int, 3>{});
     }
     return 0;
+}
+
+template <class Real, class Draw>
+int draw(const Hierarchy<Real>& hierarchy, const Asked& asked, nestgrid_surface& out,
+         const Draw& of_dimension) {
+    return draw_any(hierarchy, asked, of_dimension, [&](auto drawn, const Projection&) {
+        hand_over(std::move(drawn), asked.part(), out);
+    });
+}
+
+/// Hands out several surfaces of one walk.
+template <int dimension>
+void hand_out(std::vector<Isosurface<dimension>> drawn, const Projection& projection,
+              const Asked& asked, nestgrid_surface* out) {
+    for (Isosurface<dimension>& one : drawn) {
+        Projected<Isosurface<dimension>> result;
+        static_cast<Isosurface<dimension>&>(result) = std::move(one);
+        result.search.threshold = projection.threshold.value_or(0);
+        hand_over(std::move(result), asked.part(), *out++);
+    }
+}
+
+/// \throw InvalidInput where there is nothing to draw, or nowhere to put it
+std::span<const double> require_isovalues(std::size_t count, const double* isovalues,
+                                          const nestgrid_surface* out) {
+    if (count == 0 || isovalues == nullptr || out == nullptr) {
+        throw InvalidInput("there are no isovalues, or no surfaces for them");
+    }
+    return {isovalues, count};
 }
 
 template <class Real>
@@ -161,6 +196,26 @@ extern "C" int nestgrid_isosurface_with(const nestgrid_grid* grid, const nestgri
     return with_options(options, grid, field, message, message_size, [&](const Asked& asked) {
         return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
             return draw_isosurface(hierarchy, isovalue, asked, *out);
+        });
+    });
+}
+
+extern "C" int nestgrid_isosurfaces(const nestgrid_grid* grid, const nestgrid_field* field,
+                                    size_t count, const double* isovalues,
+                                    const nestgrid_options* options, nestgrid_surface* out,
+                                    char* message, size_t message_size) {
+    if (out != nullptr) std::fill_n(out, count, nestgrid_surface{});
+    return with_options(options, grid, field, message, message_size, [&](const Asked& asked) {
+        const std::span<const double> values = require_isovalues(count, isovalues, out);
+        return with_tables(grid, field, asked.attributes(), [&](const auto& hierarchy) {
+            return draw_any(
+                hierarchy, asked,
+                [&](auto dimension, Prerolls& prerolls, const auto&... how) {
+                    return isosurfaces<dimension>(prerolls, values, how...);
+                },
+                [&](auto drawn, const Projection& projection) {
+                    hand_out(std::move(drawn), projection, asked, out);
+                });
         });
     });
 }

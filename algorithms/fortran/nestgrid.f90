@@ -330,6 +330,19 @@ module nestgrid
             integer(c_size_t), value :: message_size
         end function nestgrid_isosurface_with
 
+        integer(c_int) function nestgrid_isosurfaces(grid, field, count, isovalues, options, &
+                out, message, message_size) bind(c, name="nestgrid_isosurfaces")
+            import
+            type(nestgrid_grid), intent(in) :: grid
+            type(nestgrid_field), intent(in) :: field
+            integer(c_size_t), value :: count
+            real(c_double), intent(in) :: isovalues(*)
+            type(nestgrid_options), intent(in), optional :: options
+            type(nestgrid_surface), intent(inout) :: out(*)
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_isosurfaces
+
         integer(c_int) function nestgrid_isoband(grid, field, low, high, options, &
                 out, message, message_size) bind(c, name="nestgrid_isoband")
             import

@@ -183,6 +183,29 @@ TEST(MeasuresForC, AreThoseOfTheLibrary) {
     }
 }
 
+TEST(SeveralIsosurfacesForC, AreThoseOfTheLibrary) {
+    const std::array<double, 3> isovalues{0.3, 0.1, 0.2};
+    for_each_scene([&](auto& scene) {
+        scene.options.threshold = 0.05;
+        std::array<nestgrid_surface, 3> several{};
+        ASSERT_EQ(nestgrid_isosurfaces(&scene.in_c.table, &scene.field, isovalues.size(),
+                                       isovalues.data(), &scene.options, several.data(),
+                                       scene.message.data(), scene.message.size()),
+                  0)
+            << scene.message.data();
+        const HierarchicalIndicator offsets(scene.grid, scene.first);
+        const auto direct = isosurfaces(scene.grid, scene.first, isovalues, under(offsets, 0.05),
+                                        {.elements = false});
+        for (std::size_t i = 0; i < isovalues.size(); ++i) {
+            nestgrid_surface_details details{};
+            details.size = sizeof(details);
+            ASSERT_EQ(nestgrid_details(&several[i], &details, nullptr, 0), 0);
+            EXPECT_EQ(details.threshold, 0.05);
+            expect_same(several[i], direct[i]);
+        }
+    });
+}
+
 TEST(BandsForC, AreThoseOfTheLibrary) {
     for_each_scene([](auto& scene) {
         scene.options.threshold = 0.05;

@@ -99,6 +99,25 @@ TEST_F(RefusalsForC, OfOptionsAreSentences) {
     EXPECT_EQ(isosurface_says(), "-2 threads are asked for, not -1 to 1024");
 }
 
+TEST_F(RefusalsForC, OfSeveralIsosurfacesAreSentences) {
+    const std::array<double, 2> isovalues{0.2, 0.3};
+    std::array<nestgrid_surface, 2> surfaces{};
+    const auto says = [&](std::size_t count, const double* values, nestgrid_surface* out) {
+        return refusal([&](char* text, std::size_t size) {
+            return nestgrid_isosurfaces(&solid.in_c.table, &solid.field, count, values, &options,
+                                        out, text, size);
+        });
+    };
+    const std::string none = "there are no isovalues, or no surfaces for them";
+    EXPECT_EQ(says(0, isovalues.data(), surfaces.data()), none);
+    EXPECT_EQ(says(2, nullptr, surfaces.data()), none);
+    EXPECT_EQ(says(2, isovalues.data(), nullptr), none);
+    options.max_triangles = 10;
+    EXPECT_NE(says(2, isovalues.data(), surfaces.data()).find("number of triangles"),
+              std::string::npos);
+    EXPECT_EQ(surfaces[0].owner, nullptr);
+}
+
 TEST_F(RefusalsForC, OfProjectionsAreSentences) {
     options.blend = 0.5;
     EXPECT_EQ(isosurface_says(), "blend is not a finite number of at least 1");

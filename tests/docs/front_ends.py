@@ -32,7 +32,7 @@ TABLE = {
     "What is drawn": {
         "an isosurface": "isosurface nestgrid_isosurface_with isosurface isovalue isosurface IsosurfaceSource "
         "NestgridIsosurface",
-        "several in one walk": "isosurfaces a --value a isosurfaces SetMoreIsovalues MoreIsovalues",
+        "several in one walk": "isosurfaces nestgrid_isosurfaces --value a isosurfaces SetMoreIsovalues MoreIsovalues",
         "a series of them": "IsosurfaceSeries a a a a a a",
         "a band between two": "isoband nestgrid_isoband band a isoband IsobandSource NestgridBand",
         "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",

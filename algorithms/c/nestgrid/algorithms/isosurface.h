@@ -73,6 +73,13 @@ int nestgrid_isosurface_with(const nestgrid_grid* grid, const nestgrid_field* fi
                              double isovalue, const nestgrid_options* options,
                              nestgrid_surface* out, char* message, size_t message_size);
 
+/** Several isosurfaces of component 0 of a field in one walk: out[i], of `count`, is that of
+ * isovalues[i]. Collapses, distances that are kept and a number of triangles do not go with it.
+ * Free each of them; where this fails, all are empty. */
+int nestgrid_isosurfaces(const nestgrid_grid* grid, const nestgrid_field* field, size_t count,
+                         const double* isovalues, const nestgrid_options* options,
+                         nestgrid_surface* out, char* message, size_t message_size);
+
 /** The surface around low <= U < high inside the domain, for component 0 of a field: both
  * level sets, oriented away from the band, open on the boundary of the domain. Neither caps nor a
  * number of triangles go with it. */
