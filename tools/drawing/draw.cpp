@@ -246,8 +246,10 @@ private:
         progress_.show("painting");
         const Meter meter;
         const PictureOptions& picture = options_.surface.picture;
-        // An isosurface without normals is meant to be flat.
-        if (!request_.in_one_colour()) std::ranges::for_each(panels, shade);
+        for (Panel& panel : panels) {
+            // An isosurface without normals is meant to be flat.
+            if (!request_.in_one_colour() || panel.capped) shade(panel);
+        }
         write_picture(panels, parse(picture), picture.image);
         field_.picture_seconds = meter.seconds();
         report.wrote(picture.image, {{"surfaces", panels.size()}});

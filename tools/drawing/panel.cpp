@@ -48,10 +48,10 @@ void set_view(Panel& panel, const DrawingRequest& request, const nestgrid::Surfa
     if (side > 0) panel.view.from = panel.view.from - 2 * side / dot(normal, normal) * normal;
 }
 
-/// Gives a surface the normals that its shades need, unless it has some. It has an edge where
-/// triangles meet at more than 40 degrees.
-vtkSmartPointer<vtkPolyData> shaded(vtkPolyData* surface) {
-    if (surface->GetPointData()->GetNormals() != nullptr) return surface;
+/// Gives a surface the normals that its shades need, unless it has some and no cap, around which no
+/// vertex has one normal. It has an edge where triangles meet at more than 40 degrees.
+vtkSmartPointer<vtkPolyData> shaded(vtkPolyData* surface, bool capped) {
+    if (surface->GetPointData()->GetNormals() != nullptr && !capped) return surface;
     const vtkNew<vtkPolyDataNormals> normals;
     normals->SetInputData(surface);
     normals->SetFeatureAngle(40);
@@ -142,6 +142,7 @@ std::string caption(const Drawn& d, const DrawnField& field, const DrawingReques
 Panel make_panel(Drawn& d, const DrawnField& field, const DrawingRequest& request, bool elements) {
     const auto data = [&](auto& surface) { return borrowed(surface, field.name, elements); };
     Panel panel{.surface = data(d.result.surface), .caption = caption(d, field, request)};
+    panel.capped = request.cap && panel.surface->GetPointData()->GetNormals() != nullptr;
     if (request.in_one_colour()) {
         if (field.dimension == 3) return panel;
         panel.surface = data(d.segments);
@@ -162,8 +163,8 @@ Panel make_panel(Drawn& d, const DrawnField& field, const DrawingRequest& reques
 }
 
 void shade(Panel& panel) {
-    if (panel.lit) panel.surface = shaded(panel.surface);
-    if (panel.veil != nullptr) panel.veil = shaded(panel.veil);
+    if (panel.lit) panel.surface = shaded(panel.surface, panel.capped);
+    if (panel.veil != nullptr) panel.veil = shaded(panel.veil, panel.capped);
 }
 
 vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, const Drawn& d, const DrawnField& field,

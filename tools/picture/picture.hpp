@@ -43,7 +43,8 @@ struct Panel {
     vtkSmartPointer<vtkPolyData> lines{};  ///< on the surface, or null
     Lines kind = Lines::outlines;
     Viewpoint view{};
-    bool lit = true;  ///< the surface; a veil always is
+    bool lit = true;      ///< the surface; a veil always is
+    bool capped = false;  ///< has normals, and edges where caps begin
 };
 
 /// What the pictures of all commands have in common.

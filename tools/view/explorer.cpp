@@ -77,6 +77,7 @@ Explorer::Explorer(ExploredField field, const Executor& executor)
         // Curved cells of degree 1 are drawn as polynomials, too.
         degree_ = std::max({2, polynomials->greatest_degree(), polynomials->geometry_degree()});
         curved_ = polynomials->geometry_degree() > 1;
+        jump_ = polynomials->jump();
     }
     if (field_.range) {
         least_ = (*field_.range)[0];
@@ -109,6 +110,7 @@ std::string Explorer::info() const {
         .key("nodes")
         .number(static_cast<double>(nodes_));
     text.key("degree").number(degree_).key("curved").boolean(curved_);
+    text.key("jump").number(jump_);
     text.key("preroll_seconds").number(preroll_seconds_);
     return text.close('}').text();
 }

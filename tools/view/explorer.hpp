@@ -87,6 +87,7 @@ private:
     std::size_t nodes_ = 0;  // of a frame
     int degree_ = 1;
     bool curved_ = false;
+    double jump_ = 0;   // between elements, of data of higher degree
     double least_ = 0;  // of all frames
     double greatest_ = 0;
     std::array<double, 2> usual_range_{};  // of the values, or of nearly all

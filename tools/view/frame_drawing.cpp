@@ -86,7 +86,7 @@ FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
     const bool normals = request_.normals != NormalType::none;
     const bool quickly = request_.moving || request_.collapses();
     IsosurfaceOptions options = watched({.cap = request_.cap, .elements = request_.outlines});
-    options.normals = normals && !quickly;
+    options.normals = normals && !quickly && !request_.cap;
     // Linear cuts keep an error.
     const bool keeps =
         request_.error > 0 || request_.indicator == "deviation" || criteria_.polynomials != nullptr;
@@ -97,7 +97,9 @@ FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
                                                under(asked, by.bounds), options, {executor_})};
     if (part.drawn.cancelled) throw FrameAbandoned{};
     if (criteria_.slopes != nullptr && !request_.collapses()) part.distance = dropped.greatest();
-    if (normals && quickly) {
+    if (normals && request_.cap) {
+        part.drawn.surface = with_creases(part.drawn.surface);
+    } else if (normals && quickly) {
         Surface<3>& surface = part.drawn.surface;
         surface.normals = normals_from_triangles(surface);
     }

@@ -66,6 +66,57 @@ void write_outlines(FrameReply& reply, const Surface<3>& surface) {
     text.close('}');
 }
 
+Surface<3> with_creases(const Surface<3>& surface) {
+    const double least_cosine = std::cos(40 * std::acos(-1.0) / 180);
+    using Corner = std::pair<std::uint32_t, std::uint32_t>;  // vertex, place among all corners
+    std::vector<Corner> corners;
+    std::vector<Point> direction;  // of each triangle, of unit length
+    std::vector<double> area;
+    for (const auto& [a, b, c] : surface.simplices) {
+        const Point& x = surface.vertices[a];
+        const Point normal = cross(surface.vertices[b] - x, surface.vertices[c] - x);
+        const double length = norm(normal);
+        for (const std::uint32_t v : {a, b, c}) {
+            corners.emplace_back(v, static_cast<std::uint32_t>(corners.size()));
+        }
+        direction.push_back(length > 0 ? (1 / length) * normal : normal);
+        area.push_back(length);
+    }
+    std::ranges::sort(corners);
+    Surface<3> creased;
+    creased.simplices = surface.simplices;
+    creased.elements = surface.elements;
+    creased.element_of = surface.element_of;
+    creased.shape_of = surface.shape_of;
+    creased.level_of = surface.level_of;
+    for (auto begin = corners.begin(); begin != corners.end();) {
+        const auto end = std::find_if(begin, corners.end(), [&](const Corner& corner) {
+            return corner.first != begin->first;
+        });
+        // Triangles whose directions are near are one piece, and so are those near to them.
+        while (begin != end) {
+            auto piece = begin + 1;
+            for (auto seen = begin; seen != piece; ++seen) {
+                piece = std::partition(piece, end, [&](const Corner& other) {
+                    return dot(direction[seen->second / 3], direction[other.second / 3]) >=
+                           least_cosine;
+                });
+            }
+            Point normal{0, 0, 0};
+            const auto number = static_cast<std::uint32_t>(creased.vertices.size());
+            creased.vertices.push_back(surface.vertices[begin->first]);
+            for (; begin != piece; ++begin) {
+                const std::uint32_t t = begin->second / 3;
+                normal = normal + area[t] * direction[t];
+                creased.simplices[t][begin->second % 3] = number;
+            }
+            const double length = norm(normal);
+            creased.normals.push_back(length > 0 ? (1 / length) * normal : normal);
+        }
+    }
+    return creased;
+}
+
 std::vector<Point> normals_from_triangles(const Surface<3>& surface) {
     std::vector<Point> normals(surface.vertices.size(), Point{0, 0, 0});
     for (const auto& [a, b, c] : surface.simplices) {

@@ -35,6 +35,7 @@ TEST(Polynomials, AreDrawnWithinErrorsAndNumbersOfTriangles) {
     EXPECT_NE(explorer.info().find("\"degree\":4"), std::string::npos);
 
     const HighOrder data(world, field);
+    EXPECT_NE(explorer.info().find("\"jump\":" + text_of(data.jump())), std::string::npos);
     const Plane plane({0.1, 0.2, 0.3}, {1, 0.2, 0.1});
     const std::string asked = "isovalue=0.1&plane=0.1,0.2,0.3,1,0.2,0.1";
     for (const double error : {0.3, 0.02}) {
@@ -125,6 +126,40 @@ TEST(Caps, CloseIsosurfaces) {
         EXPECT_EQ(edges_at_boundary(held + std::string("&cap=on")), 0U) << held;
     }
     EXPECT_LE(frame_of(explorer, "isovalue=0.1&cap=on&triangles=5000").number("triangles"), 5000);
+}
+
+/// The part of a box where x is at least 0.1 is a box, with the normals of one.
+TEST(Caps, HaveEdges) {
+    const DegreeWorld<3> world({.levels = 1, .least_degree = 1, .greatest_degree = 2, .seed = 7},
+                               [](const Point& x) { return x[0]; });
+    const DegreeField<3> field(world);
+    const SequentialExecutor executor;
+    const std::shared_ptr<const DegreeWorld<3>> shared(std::shared_ptr<const void>(), &world);
+    Explorer explorer(still_field(shared, field), executor);
+    const auto triangles_of = [](const Frame& frame) {
+        return surface_of<3>(frame.array<float>("isosurface", "positions"),
+                             frame.array<std::uint32_t>("isosurface", "indices"));
+    };
+    const std::string asked = "isovalue=0.1&error=0.1&cap=on";
+    const Surface<3> without = triangles_of(frame_of(explorer, asked));
+    for (const std::string motion : {"settled", "moving"}) {
+        const Frame frame = frame_of(explorer, asked + "&normals=float32&motion=" + motion);
+        const Surface<3> creased = triangles_of(frame);
+        ASSERT_EQ(creased.simplices.size(), without.simplices.size());
+        for (std::size_t t = 0; t < without.simplices.size(); ++t) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                EXPECT_EQ(creased.vertices[creased.simplices[t][k]],
+                          without.vertices[without.simplices[t][k]]);
+            }
+        }
+        const std::vector<float> normals = frame.array<float>("isosurface", "normals");
+        ASSERT_EQ(normals.size(), 3 * creased.vertices.size());
+        for (std::size_t i = 0; i < normals.size(); i += 3) {
+            const double greatest = std::max(
+                {std::abs(normals[i]), std::abs(normals[i + 1]), std::abs(normals[i + 2])});
+            EXPECT_NEAR(greatest, 1, 1e-5);
+        }
+    }
 }
 
 }  // namespace

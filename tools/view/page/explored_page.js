@@ -252,6 +252,8 @@ export class ExploredPage {
       ['triangles', 'triangles', readableCount(frame.triangles)],
       ['bound', 'error at most', bound, 'On the surface, the data differ from its value by no more'],
       ...(within === '' ? [] : [['within', 'within', within, nearnessMeans]]),
+      ...(this.#info.jump > 1e-6 * (greatest - least) ? [['jump', 'data jump by', readable(this.#info.jump),
+        'Between elements: the error may be greater by this than what was asked for']] : []),
       ...(this.#info.curved ? [['positions', 'points off by', withUnit(readable(frame.position_bound), lengthUnit),
         'Points of the surface are no farther from their places in the curved elements']] : []),
       ['threshold', name, readable(asked), meaning],
