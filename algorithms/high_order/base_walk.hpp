@@ -27,7 +27,7 @@ struct BaseElement {
     const Member* member = nullptr;
     const ShapeParts* shape = nullptr;
     CornerKeys key{};
-    std::array<Point, max_corners> x{};  ///< of the corners
+    std::array<Point, max_corners> x{};  ///< of the corners, where the walk has positions
     NodeKey path = 0;                    ///< a hash of the way down
     std::size_t number = 0;              ///< among its father's children, or of the coarse element
 };
@@ -43,13 +43,14 @@ class BaseWalk {
 public:
     /// \param way the elements on the way down, the one at hand last
     using Function = std::function<void(Task* task, std::span<const BaseElement> way)>;
+    enum class Positions { no, yes };
 
     /// \throw InvalidInput where the hierarchy is of another dimension than 2 and 3
     explicit BaseWalk(const Hierarchy<double>& base);
 
     /// \throw InvalidInput for an element that is divided otherwise than by red_rule(), or
     ///        red_tetrahedron_rule() with any diagonal, but for the order of nodes and children
-    void for_each(const Function& function) const;
+    void for_each(const Function& function, Positions positions = Positions::no) const;
 
     /// As in "element 3/0/1".
     static std::string name(std::span<const BaseElement> way);
@@ -57,6 +58,7 @@ public:
 private:
     struct Way;
     void visit(Way& way, std::size_t level) const;
+    void put_positions(Way& way, const BaseElement& e, std::span<Point> x) const;
 
     const Hierarchy<double>* base_;
 };

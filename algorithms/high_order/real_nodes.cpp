@@ -33,17 +33,19 @@ void raise(float& number, double to) {
 /// Fills the table. Numbers of nodes are those of RealNodes::nodes_.
 class RealNodes::Preroll {
 public:
-    Preroll(RealNodes& nodes, const BaseWalk& walk, LeafRecords& records)
+    Preroll(RealNodes& nodes, const BaseWalk& walk, LeafRecords& records, LeafSummary& summary)
         : nodes_{&nodes},
           records_{&records},
+          summary_{&summary},
           components_{records.components()},
           drawn_{records.drawn()} {
         walk.for_each([this](Task*, std::span<const BaseElement> way) {
             if (way.back().member->rule == nullptr) add_leaf(way);
         });
-        walk.for_each([this](Task*, std::span<const BaseElement> way) {
+        const auto add = [this](Task*, std::span<const BaseElement> way) {
             if (way.back().member->rule != nullptr) add_split(way);
-        });
+        };
+        walk.for_each(add, BaseWalk::Positions::yes);
         std::stable_sort(splits_.begin(), splits_.end(),
                          [](const Split& a, const Split& b) { return a.level < b.level; });
         deviation_.resize(nodes.nodes_.size());
@@ -51,7 +53,9 @@ public:
 
     void run() {
         for (const Split& split : splits_) put_offsets(split);
-        for (const Leaf& leaf : leaves_) seed(leaf);
+        summary_->jumps.reserve(leaves_.size());
+        if (drawn_ == 1) summary_->ranges.reserve(leaves_.size());
+        for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) seed(leaf);
         sweep();
     }
 
@@ -65,12 +69,12 @@ private:
     /// record, any other that of the first leaf that has it.
     void add_leaf(std::span<const BaseElement> way) {
         const BaseElement& e = way.back();
-        Leaf leaf{{}, records_->leaf_at(e.path)};
-        const LeafPolynomial& from = records_->leaves()[leaf.leaf];
+        LeafNodes corner{};
+        const LeafPolynomial& from = records_->leaves()[leaves_.size()];
         for (std::size_t k = 0; k < e.shape->corners; ++k) {
             const auto fresh = static_cast<std::uint32_t>(nodes_->nodes_.size());
             const auto [at, is_new] = nodes_->number_.insert(e.key[k], fresh);
-            leaf.corner[k] = *at;
+            corner[k] = *at;
             if (is_new) {
                 nodes_->nodes_.emplace_back();
                 for (std::size_t c = 0; c < components_; ++c) {
@@ -78,14 +82,14 @@ private:
                         records_->net(from, c)[net_corner(from.degree, from.factors(), k)]);
                 }
             }
-            if (node(leaf.corner[k]).hangs) continue;
+            if (node(corner[k]).hangs) continue;
             const Place place = e.shape->reference_corner(k);
             const OnRecord hangs_on = records_->around(way, std::span(&place, 1));
             if (hangs_on.record < 0) continue;
-            node(leaf.corner[k]).hangs = true;
-            records_->values_at(hangs_on, nodes_->values_.data() + leaf.corner[k] * components_);
+            node(corner[k]).hangs = true;
+            records_->values_at(hangs_on, nodes_->values_.data() + corner[k] * components_);
         }
-        leaves_.push_back(leaf);
+        leaves_.push_back(corner);
     }
 
     void add_split(std::span<const BaseElement> way) {
@@ -115,7 +119,15 @@ private:
         made.shift = static_cast<std::uint8_t>(on.shift);
         made.beta = records_->facts_on(on).beta;
         made.halves = static_cast<std::uint32_t>(nodes_->parts_.size());
-        nodes_->parts_.push_back(on);
+        const PartOfLeaf in = records_->in_owner(on);
+        HalvedPart half{
+            in.leaf, static_cast<std::uint8_t>(in.level), static_cast<std::uint8_t>(in.count), {}};
+        for (std::size_t i = 0; i < in.count; ++i) {
+            for (std::size_t d = 0; d < 3; ++d) {
+                half.corner[i][d] = static_cast<std::int32_t>(in.corner[i][d]);
+            }
+        }
+        nodes_->parts_.push_back(half);
     }
 
     /// Fathers come first: what moves the parents is known.
@@ -146,11 +158,12 @@ private:
         }
     }
 
-    /// Tells the corners of a leaf what they cannot know from nodes.
-    void seed(const Leaf& leaf) {
-        const LeafPolynomial& of = records_->leaves()[leaf.leaf];
-        const std::size_t corners = of.parts().corners;
+    /// Tells the corners of a leaf what they cannot know from nodes, and the summary of the leaf.
+    void seed(std::size_t leaf) {
+        const LeafPolynomial& of = records_->leaves()[leaf];
+        const auto corners = std::span(leaves_[leaf]).first(of.parts().corners);
         NetFacts facts = records_->facts_of(of);
+        summary_->greatest_beta = std::max(summary_->greatest_beta, facts.beta);
         double error = facts.beta;
         double flatness = facts.beta;
         for (std::size_t part = 0; part < of.parts().parts.size(); ++part) {
@@ -161,24 +174,32 @@ private:
         }
         double lo = std::numeric_limits<double>::infinity();
         double hi = -lo;
+        double low = facts.least;
+        double high = facts.greatest;
         double jump = 0;
         double moved = 0;
-        for (std::size_t k = 0; k < corners; ++k) {
-            lo = std::min(lo, value(leaf.corner[k], 0));
-            hi = std::max(hi, value(leaf.corner[k], 0));
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const double at_corner = value(corners[k], 0);
+            const auto off = static_cast<double>(node(corners[k]).off);
+            lo = std::min(lo, at_corner);
+            hi = std::max(hi, at_corner);
+            low = std::min(low, at_corner - off);
+            high = std::max(high, at_corner + off);
             const std::size_t own = net_corner(of.degree, of.factors(), k);
             jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) {
-                                return records_->net(of, c)[own] - value(leaf.corner[k], c);
+                                return records_->net(of, c)[own] - value(corners[k], c);
                             }));
-            moved = std::max(moved, deviation_[leaf.corner[k]]);
+            moved = std::max(moved, deviation_[corners[k]]);
         }
-        records_->raise_jump(leaf.leaf, jump);
-        // What is inside parts is that of the records, which are off by of.jump.
-        error += drawn_ == 1 ? jump : jump + static_cast<double>(of.jump);
+        const float jumps = std::max(of.jump, detail::float_above(jump));
+        summary_->jumps.push_back(jumps);
+        if (drawn_ == 1) summary_->add_range(low, high);
+        // What is inside parts is that of the records, which are off by the jumps.
+        error += drawn_ == 1 ? jump : jump + static_cast<double>(jumps);
         if (drawn_ == 1) error = std::max({error, facts.greatest - hi, lo - facts.least});
         error += moved;
-        for (std::size_t k = 0; k < corners; ++k) {
-            RealNode& corner = node(leaf.corner[k]);
+        for (const std::uint32_t number : corners) {
+            RealNode& corner = node(number);
             raise(corner.bound, error);
             raise(corner.stop, flat_share * flatness);
         }
@@ -265,20 +286,34 @@ private:
 
     RealNodes* nodes_;
     LeafRecords* records_;
+    LeafSummary* summary_;
     std::size_t components_;
     std::size_t drawn_;
-    std::vector<Leaf> leaves_;
+    std::vector<LeafNodes> leaves_;
     std::vector<Split> splits_;      // coarse to fine
     std::vector<double> deviation_;  // how far P_S U may be from U at a node that hangs
     std::vector<bool> done_;
 };
 
-RealNodes::RealNodes(std::uint64_t epoch, const BaseWalk& walk, LeafRecords& records)
-    : records_{&records}, epoch_{epoch} {
-    Preroll(*this, walk, records).run();
+RealNodes::RealNodes(std::uint64_t epoch, const BaseWalk& walk, LeafRecords& records,
+                     LeafSummary& summary)
+    : epoch_{epoch},
+      components_{summary.components},
+      least_{summary.least[0]},
+      greatest_{summary.greatest[0]} {
+    Preroll(*this, walk, records, summary).run();
     nodes_.shrink_to_fit();
     parts_.shrink_to_fit();
     values_.shrink_to_fit();
+}
+
+PartOfLeaf RealNodes::part_halved(const RealNode& node) const {
+    const HalvedPart& half = parts_[node.halves];
+    PartOfLeaf part{half.leaf, half.level, {}, half.count};
+    for (std::size_t i = 0; i < half.corner.size(); ++i) {
+        std::copy(half.corner[i].begin(), half.corner[i].end(), part.corner[i].begin());
+    }
+    return part;
 }
 
 double RealNodes::offset_bound(NodeKey key) const {
@@ -297,7 +332,7 @@ double RealNodes::bound(const Rule&, std::span<const NodeKey> keys) const {
 }
 
 std::size_t RealNodes::memory_bytes() const {
-    return nodes_.capacity() * sizeof(RealNode) + parts_.capacity() * sizeof(OnRecord) +
+    return nodes_.capacity() * sizeof(RealNode) + parts_.capacity() * sizeof(HalvedPart) +
            values_.capacity() * sizeof(double) + number_.memory_bytes();
 }
 

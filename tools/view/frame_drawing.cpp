@@ -33,8 +33,13 @@ auto FrameDrawing::with(double threshold, const Function& function) const {
         });
     }
     const HighOrder& data = *criteria_.polynomials;
-    const VirtualRefinement fine(
-        data, {.tolerance = std::max(threshold, data.least_tolerance()), .lens = request_.lens});
+    VirtualOptions options{.tolerance = std::max(threshold, data.least_tolerance()),
+                           .lens = request_.lens};
+    const std::optional<double>& isovalue = request_.isovalue;
+    if (isovalue && !plane_ && !request_.collapses()) {
+        options.values.emplace({std::array{*isovalue, *isovalue}});
+    }
+    const VirtualRefinement fine(data, options);
     const Hierarchy<double>& hierarchy = fine;
     return function(hierarchy, StoppedBy{fine.criterion(), fine.bounds()});
 }
