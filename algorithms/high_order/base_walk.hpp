@@ -4,6 +4,7 @@
 // The way through a hierarchy whose elements are divided in all directions at once, by red rules.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,6 +22,14 @@ using RedSplitKeys = std::array<NodeKey, max_split_nodes>;
 NodeKey part_key(const CornerKeys& corners, const ShapePart& part);
 /// Keys of the corners and, behind them, the new nodes of an element that the rule divides.
 RedSplitKeys split_keys_of(const CornerKeys& corners, const Rule& rule);
+
+inline double diameter_of(std::span<const Point> corners) {
+    double diameter = 0;
+    for (const Point& a : corners) {
+        for (const Point& b : corners) diameter = std::max(diameter, norm(a - b));
+    }
+    return diameter;
+}
 
 /// An element of the hierarchy on the way down.
 struct BaseElement {

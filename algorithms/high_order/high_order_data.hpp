@@ -21,16 +21,8 @@ struct PolynomialFacts {
     RealNodes nodes;
 
     PolynomialFacts(const LeafFunction& function, const BaseWalk& walk, std::uint64_t epoch)
-        : summary{function}, nodes{nodes_of(function, walk, epoch, summary)} {}
+        : summary{function}, nodes{epoch, function, walk, summary} {}
     std::size_t memory_bytes() const { return summary.memory_bytes() + nodes.memory_bytes(); }
-
-private:
-    /// The polynomials of all leaves are needed meanwhile.
-    static RealNodes nodes_of(const LeafFunction& function, const BaseWalk& walk,
-                              std::uint64_t epoch, LeafSummary& summary) {
-        LeafRecords records(function, walk, summary);
-        return {epoch, walk, records, summary};
-    }
 };
 
 /// The polynomials and records of some leaves.

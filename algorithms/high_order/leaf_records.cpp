@@ -38,34 +38,74 @@ std::array<std::uint8_t, 3> frame_corners(const CornerKeys& keys, const ShapePar
 
 }  // namespace
 
-double* NetStore::add(std::size_t count) {
+double* NetStore::add(std::size_t count, std::uint32_t needed_until, std::uint32_t now) {
     if (count > left_) {
-        constexpr std::size_t most = std::size_t{1} << 16U;
+        std::erase_if(blocks_, [&](const Block& block) {
+            const bool goes = block.needed_until < now;
+            if (goes) size_ -= block.size;
+            return goes;
+        });
+        constexpr std::size_t most = std::size_t{1} << 14U;
         left_ = std::max(count, std::min(size_, most));
-        blocks_.push_back(std::make_unique_for_overwrite<double[]>(left_));
-        next_ = blocks_.back().get();
+        blocks_.push_back({std::make_unique_for_overwrite<double[]>(left_), left_, 0});
         size_ += left_;
     }
+    Block& block = blocks_.back();
+    block.needed_until = std::max(block.needed_until, needed_until);
+    double* const added = block.room.get() + (block.size - left_);
     left_ -= count;
-    next_ += count;
-    return next_ - count;
+    return added;
 }
 
-LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary)
+LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk)
     : components_{function.components()}, drawn_{function.drawn()} {
     take_leaves(function, walk, nullptr);
-    for (LeafPolynomial& leaf : leaves_) {
-        const std::size_t size = net_size(leaf.degree, leaf.factors());
+}
+
+/// Calls a function with the owners of the records on a leaf.
+template <class Function>
+void LeafRecords::for_each_owner(const LeafPolynomial& leaf, const Function& function) const {
+    for (std::size_t part = 0; part < leaf.parts().parts.size(); ++part) {
+        const std::int32_t record = of_part_[leaf.first + part].record;
+        function(records_[static_cast<std::size_t>(record)].leaf);
+    }
+}
+
+void LeafRecords::read_all(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary,
+                           const std::function<void(std::uint32_t leaf)>& ready) {
+    finish();
+    std::vector<std::uint32_t> needed_until(leaves_.size());
+    std::vector<std::array<std::uint32_t, 2>> late;  // when a leaf is ready, if not when it is read
+    for (const LeafPolynomial& leaf : leaves_) {
+        std::uint32_t when = leaf.number;
+        for_each_owner(leaf, [&](std::uint32_t owner) { when = std::max(when, owner); });
+        const auto need = [&](std::uint32_t of) {
+            needed_until[of] = std::max(needed_until[of], when);
+        };
+        need(leaf.number);
+        for_each_owner(leaf, need);
+        if (when != leaf.number) late.push_back({when, leaf.number});
+    }
+    std::sort(late.begin(), late.end());
+    auto next = late.begin();
+    std::vector<bool> waits(leaves_.size());
+    for (const auto& [when, leaf] : late) waits[leaf] = true;
+    std::uint32_t number = 0;
+    walk.for_each([&](Task* task, std::span<const BaseElement> way) {
+        if (way.back().member->rule != nullptr) return;
+        LeafPolynomial& leaf = leaves_[number];
+        take_polynomial(function, task, way, leaf, needed_until[number]);
         summary.greatest_degree = std::max(summary.greatest_degree, int{leaf.degree});
+        const std::size_t size = net_size(leaf.degree, leaf.factors());
         for (std::size_t c = 0; c < components_; ++c) {
             const auto [least, greatest] = std::minmax_element(net(leaf, c), net(leaf, c) + size);
             summary.least[c] = std::min(summary.least[c], *least);
             summary.greatest[c] = std::max(summary.greatest[c], *greatest);
         }
-        for (std::size_t part = 0; part < leaf.parts().parts.size(); ++part) {
-            leaf.jump = std::max(leaf.jump, detail::float_above(jump_on(leaf, part)));
-        }
-    }
+        if (!waits[number]) ready(number);
+        for (; next != late.end() && (*next)[0] == number; ++next) ready((*next)[1]);
+        ++number;
+    });
 }
 
 LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk,
@@ -77,9 +117,8 @@ LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk,
     finish();
 }
 
-/// Takes the polynomials of leaves that are looked at and of owners, and finds the records of the
-/// first ones.
-/// \param choice null: all leaves
+/// Takes leaves that are looked at and owners, and finds the records of the first ones.
+/// \param choice null: all leaves, without polynomials
 void LeafRecords::take_leaves(const LeafFunction& function, const BaseWalk& walk,
                               const LeafChoice* choice) {
     std::uint32_t number = 0;
@@ -101,8 +140,11 @@ void LeafRecords::take_leaves(const LeafFunction& function, const BaseWalk& walk
         const bool owns = claim_parts(function, task, way, choice, index);
         if (owns || own != LeafChoice::none) {
             if (index >= leaves_.size()) leaves_.emplace_back();
-            leaves_[index].number = number;
-            take_polynomial(function, task, way, leaves_[index]);
+            LeafPolynomial& leaf = leaves_[index];
+            leaf.number = number;
+            leaf.shape = e.shape->shape;
+            leaf.degree = static_cast<std::uint8_t>(degree_of(function, task, way));
+            if (choice != nullptr) take_polynomial(function, task, way, leaf);
         }
         ++number;
     });
@@ -157,9 +199,10 @@ bool LeafRecords::claim_parts(const LeafFunction& function, Task* task,
 
 /// Takes the polynomial of the last element on the way.
 void LeafRecords::take_polynomial(const LeafFunction& function, Task* task,
-                                  std::span<const BaseElement> way, LeafPolynomial& leaf) {
+                                  std::span<const BaseElement> way, LeafPolynomial& leaf,
+                                  std::uint32_t needed_until) {
     const BaseElement& e = way.back();
-    const int degree = degree_of(function, task, way);
+    const int degree = leaf.degree;
     const Factors& factors = e.shape->factors;
     thread_local std::map<std::pair<Shape, int>, std::vector<Point>> all_points;
     std::vector<Point>& points = all_points[{e.shape->shape, degree}];
@@ -170,9 +213,7 @@ void LeafRecords::take_polynomial(const LeafFunction& function, Task* task,
     thread_local std::vector<double> values;
     values.resize(points.size() * components_);
     function.evaluate(task, e.member->element, points, values);
-    leaf.degree = static_cast<std::uint8_t>(degree);
-    leaf.shape = e.shape->shape;
-    double* own = nets_.add(components_ * leaf.size());
+    double* own = nets_.add(components_ * leaf.size(), needed_until, leaf.number);
     leaf.net = own;
     double jump = 0;
     for (std::size_t c = 0; c < components_; ++c, own += leaf.size()) {

@@ -68,22 +68,35 @@ struct LeafPolynomial {
 /// Room for coefficients, which stay where they are.
 class NetStore {
 public:
-    double* add(std::size_t count);
+    static constexpr std::uint32_t always = 0xFFFFFFFFU;
+    /// \param now what was needed until before this may go
+    double* add(std::size_t count, std::uint32_t needed_until = always, std::uint32_t now = 0);
     std::size_t memory_bytes() const { return size_ * sizeof(double); }
 
 private:
-    std::vector<std::unique_ptr<double[]>> blocks_;
+    struct Block {
+        std::unique_ptr<double[]> room;
+        std::size_t size;
+        std::uint32_t needed_until;
+    };
+    std::vector<Block> blocks_;
     std::size_t left_ = 0;  // in the last block
     std::size_t size_ = 0;  // of all blocks
-    double* next_ = nullptr;
 };
 
 class LeafRecords {
 public:
-    /// Those of all leaves, in the order of the walk. Asks the function once for each.
-    /// \param summary gets degrees, ranges of components and jumps
-    /// \throw GridError where a degree is not 1 to 8, or a value not finite, and names the leaf
-    LeafRecords(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary);
+    /// Those of all leaves, in the order of the walk, before read_all().
+    /// \throw GridError where a degree is not 1 to 8, and names the leaf
+    LeafRecords(const LeafFunction& function, const BaseWalk& walk);
+    /// Asks the function once for each leaf, in the order of the walk, and forgets what around()
+    /// needs. A polynomial is there until the last leaf that needs it is ready.
+    /// \param summary gets degrees and ranges of components
+    /// \param ready called for each leaf when its polynomial and those of the owners around are
+    ///        there; that of a leaf that owns a record is there by then
+    /// \throw GridError where a value is not finite, and names the leaf
+    void read_all(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary,
+                  const std::function<void(std::uint32_t leaf)>& ready);
     /// None.
     explicit LeafRecords(const LeafSummary& summary)
         : components_{summary.components}, drawn_{summary.drawn} {}
@@ -103,7 +116,7 @@ public:
     /// Points on a part of a leaf. \param points at most 4, in units of 2^-level of the leaf
     OnRecord on_part(const LeafPolynomial& leaf, std::size_t part, std::span<const Place> points,
                      int level) const;
-    /// Points on an edge or face of the last element on the way, before finish().
+    /// Points on an edge or face of the last element on the way, before read_all().
     OnRecord around(std::span<const BaseElement> way, std::span<const Place> points) const;
     /// Beta and range in a leaf, without the records around.
     NetFacts facts_of(const LeafPolynomial& leaf) const {
@@ -115,6 +128,11 @@ public:
     NetFacts facts_on(const OnRecord& part) const;
     /// Beta and range on a part of a leaf, read from its record.
     NetFacts facts_on(const LeafPolynomial& leaf, std::size_t part) const;
+    /// How far a leaf is from the records around.
+    float jump_of(const LeafPolynomial& leaf) const;
+    std::uint32_t owner_of(const OnRecord& part) const {
+        return records_[static_cast<std::size_t>(part.record)].leaf;
+    }
     /// A part of a record as one of its owner.
     PartOfLeaf in_owner(const OnRecord& part) const;
     /// Values of all components at one point.
@@ -148,7 +166,9 @@ private:
     bool claim_parts(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
                      const LeafChoice* choice, std::uint32_t index);
     void take_polynomial(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
-                         LeafPolynomial& leaf);
+                         LeafPolynomial& leaf, std::uint32_t needed_until = NetStore::always);
+    template <class Function>
+    void for_each_owner(const LeafPolynomial& leaf, const Function& function) const;
     void add_parts(std::span<const BaseElement> way, LeafPolynomial& leaf);
     double jump_on(const LeafPolynomial& leaf, std::size_t part) const;
     void take(const LeafPolynomial& leaf, std::size_t component, std::span<const Place> frame,

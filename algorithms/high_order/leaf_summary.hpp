@@ -54,6 +54,10 @@ struct LeafSummary {
         return jumps.empty() ? 0
                              : static_cast<double>(*std::max_element(jumps.begin(), jumps.end()));
     }
+    void reserve(std::size_t leaves) {
+        jumps.reserve(leaves);
+        if (drawn == 1) ranges.reserve(leaves);
+    }
     void add_range(double low, double high) {
         ranges.push_back({detail::float_below(low - rounding() - least[0]),
                           detail::float_above(high + rounding() - least[0])});

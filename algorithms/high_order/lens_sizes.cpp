@@ -51,13 +51,12 @@ double LensSizes::greatest_size(const Point& x) const {
 }
 
 bool LensSizes::is_fine(std::size_t leaf, std::span<const Place> corners, int level) const {
-    std::array<Point, max_corners> x;
-    double diameter = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        x[i] = corners_->position(leaf, corners[i], level);
-        for (std::size_t k = 0; k < i; ++k) diameter = std::max(diameter, norm(x[i] - x[k]));
-    }
-    return std::all_of(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(corners.size()),
+    std::array<Point, max_corners> room;
+    const auto x = std::span(room).first(corners.size());
+    std::transform(corners.begin(), corners.end(), x.begin(),
+                   [&](const Place& corner) { return corners_->position(leaf, corner, level); });
+    const double diameter = diameter_of(x);
+    return std::all_of(x.begin(), x.end(),
                        [&](const Point& at) { return share_ * diameter <= greatest_size(at); });
 }
 

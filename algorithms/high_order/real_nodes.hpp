@@ -46,9 +46,9 @@ struct RealNode {
 class RealNodes final : public Bounds {
 public:
     /// \param epoch of the hierarchy
-    /// \param records of all leaves
-    /// \param summary of these, which gets the ranges and jumps of leaves, and their greatest beta
-    RealNodes(std::uint64_t epoch, const BaseWalk& walk, LeafRecords& records,
+    /// \param summary of the leaves, which is set
+    /// \throw GridError as LeafRecords
+    RealNodes(std::uint64_t epoch, const LeafFunction& function, const BaseWalk& walk,
               LeafSummary& summary);
 
     const RealNode* find(NodeKey key) const {
@@ -77,19 +77,22 @@ private:
         const Rule* rule;
         int level;
     };
-    struct HalvedPart {  // a PartOfLeaf
-        std::uint32_t leaf;
-        std::uint8_t level;
-        std::uint8_t count;
-        std::array<std::array<std::int32_t, 3>, 4> corner;
+    struct HalvedPart {
+        std::uint32_t leaf = 0;
+        std::uint8_t level = 0;
+        std::uint8_t count = 0;
+        std::array<std::array<std::int32_t, 3>, 4> corner{};
+
+        HalvedPart() = default;
+        explicit HalvedPart(const PartOfLeaf& part);
     };
     using LeafNodes = std::array<std::uint32_t, max_corners>;  // at the corners of a leaf
     class Preroll;
 
     std::uint64_t epoch_;
     std::size_t components_;
-    double least_;  // of component 0
-    double greatest_;
+    double least_ = 0;  // of component 0
+    double greatest_ = 0;
     std::vector<RealNode> nodes_;
     std::vector<HalvedPart> parts_{1};  // that nodes halve; the first one is none
     std::vector<double> values_;

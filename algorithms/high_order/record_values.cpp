@@ -108,6 +108,14 @@ PartOfLeaf LeafRecords::in_owner(const OnRecord& part) const {
     return in;
 }
 
+float LeafRecords::jump_of(const LeafPolynomial& leaf) const {
+    float jump = leaf.jump;
+    for (std::size_t part = 0; part < leaf.parts().parts.size(); ++part) {
+        jump = std::max(jump, detail::float_above(jump_on(leaf, part)));
+    }
+    return jump;
+}
+
 /// Compares the coefficients of a leaf on one of its parts with those of the record there, both
 /// raised to one degree: no two polynomials differ by more than their coefficients do.
 double LeafRecords::jump_on(const LeafPolynomial& leaf, std::size_t number) const {
