@@ -31,6 +31,7 @@ RedSplitKeys split_keys_of(const CornerKeys& corners, const Rule& rule) {
 /// The memory of one walk. References stay valid while it grows.
 struct BaseWalk::Way {
     const Function* function;
+    Positions positions;
     std::unique_ptr<Task> task;
     std::vector<BaseElement> elements;
     std::deque<Family> families;
@@ -50,8 +51,8 @@ std::string BaseWalk::name(std::span<const BaseElement> way) {
     return name;
 }
 
-void BaseWalk::for_each(const Function& function) const {
-    Way way{&function, base_->open(), {}, {}};
+void BaseWalk::for_each(const Function& function, Positions positions) const {
+    Way way{&function, positions, base_->open(), {}, {}};
     way.families.resize(1);
     for (std::size_t i = 0; i < base_->coarse_count(); ++i) {
         Coarse coarse;
@@ -62,6 +63,20 @@ void BaseWalk::for_each(const Function& function) const {
         for (std::size_t k = 0; k < e.shape->corners; ++k) e.key[k] = coarse_key(coarse.ids[k]);
         way.elements.assign(1, e);
         visit(way, 0);
+    }
+}
+
+/// Puts positions of the corners and, behind them, the new nodes of an element that is divided.
+void BaseWalk::put_positions(Way& way, const BaseElement& e, std::span<Point> x) const {
+    const Rule& rule = *e.member->rule;
+    const std::span made = x.subspan(e.shape->corners, rule.new_nodes.size());
+    std::copy_n(e.x.begin(), e.shape->corners, x.begin());
+    if (base_->offers(Feature::new_positions)) {
+        base_->new_positions(way.task.get(), e.member->element, rule.all(), made);
+        return;
+    }
+    for (std::size_t n = 0; n < made.size(); ++n) {
+        made[n] = nestgrid::detail::interpolate(rule.new_nodes[n], x.data());
     }
 }
 
@@ -81,15 +96,7 @@ void BaseWalk::visit(Way& way, std::size_t level) const {
     base_->enter(way.task.get(), e.member->element, rule, 0, nullptr, ~NodeMask{0}, family);
     const RedSplitKeys keys = split_keys_of(e.key, rule);
     std::array<Point, max_split_nodes> x{};
-    const std::span made = std::span(x).subspan(e.shape->corners, rule.new_nodes.size());
-    std::copy_n(e.x.begin(), e.shape->corners, x.begin());
-    if (base_->offers(Feature::new_positions)) {
-        base_->new_positions(way.task.get(), e.member->element, rule.all(), made);
-    } else {
-        for (std::size_t n = 0; n < made.size(); ++n) {
-            made[n] = nestgrid::detail::interpolate(rule.new_nodes[n], x.data());
-        }
-    }
+    if (way.positions == Positions::yes) put_positions(way, e, x);
     for (std::size_t c = 0; c < rule.children.size(); ++c) {
         const Child& of = rule.children[c];
         BaseElement child{

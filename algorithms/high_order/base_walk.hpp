@@ -4,6 +4,7 @@
 // The way through a hierarchy whose elements are divided in all directions at once, by red rules.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -22,12 +23,20 @@ NodeKey part_key(const CornerKeys& corners, const ShapePart& part);
 /// Keys of the corners and, behind them, the new nodes of an element that the rule divides.
 RedSplitKeys split_keys_of(const CornerKeys& corners, const Rule& rule);
 
+inline double diameter_of(std::span<const Point> corners) {
+    double diameter = 0;
+    for (const Point& a : corners) {
+        for (const Point& b : corners) diameter = std::max(diameter, norm(a - b));
+    }
+    return diameter;
+}
+
 /// An element of the hierarchy on the way down.
 struct BaseElement {
     const Member* member = nullptr;
     const ShapeParts* shape = nullptr;
     CornerKeys key{};
-    std::array<Point, max_corners> x{};  ///< of the corners
+    std::array<Point, max_corners> x{};  ///< of the corners, where the walk has positions
     NodeKey path = 0;                    ///< a hash of the way down
     std::size_t number = 0;              ///< among its father's children, or of the coarse element
 };
@@ -43,13 +52,14 @@ class BaseWalk {
 public:
     /// \param way the elements on the way down, the one at hand last
     using Function = std::function<void(Task* task, std::span<const BaseElement> way)>;
+    enum class Positions { no, yes };
 
     /// \throw InvalidInput where the hierarchy is of another dimension than 2 and 3
     explicit BaseWalk(const Hierarchy<double>& base);
 
     /// \throw InvalidInput for an element that is divided otherwise than by red_rule(), or
     ///        red_tetrahedron_rule() with any diagonal, but for the order of nodes and children
-    void for_each(const Function& function) const;
+    void for_each(const Function& function, Positions positions = Positions::no) const;
 
     /// As in "element 3/0/1".
     static std::string name(std::span<const BaseElement> way);
@@ -57,6 +67,7 @@ public:
 private:
     struct Way;
     void visit(Way& way, std::size_t level) const;
+    void put_positions(Way& way, const BaseElement& e, std::span<Point> x) const;
 
     const Hierarchy<double>* base_;
 };

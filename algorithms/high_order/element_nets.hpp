@@ -22,9 +22,11 @@ struct ElementState {
 /// An element of the hierarchy, or one below a leaf.
 struct VirtualElement {
     static constexpr std::uint32_t no_leaf = 0xFFFFFFFFU;
+    static constexpr std::uint32_t left_out = no_leaf - 1;  // a leaf that is not looked at
     std::uint32_t leaf = no_leaf;  // none: an element that the hierarchy itself divides
     std::int32_t level = 0;        // below the leaf
-    std::uint64_t way = 0;         // the numbers of children from the leaf on, 4 bits each
+    // The numbers of children from the leaf on, 4 bits each; of a leaf that is left out its path.
+    std::uint64_t way = 0;
     const ElementState* state = nullptr;
 
     VirtualElement father() const { return {leaf, level - 1, way >> 4U, nullptr}; }

@@ -35,12 +35,16 @@ HighOrderData::HighOrderData(const Hierarchy<float>& single)
     : widened{std::in_place, checked(single), 0},
       base{&*widened},
       walk{*base},
-      field{LeafField(*base), walk, base->epoch()} {
+      epoch{base->epoch()},
+      field{LeafField(*base), walk, epoch} {
     look_at_places();
 }
 
 HighOrderData::HighOrderData(const Hierarchy<double>& from)
-    : base{&checked(from)}, walk{*base}, field{LeafField(*base), walk, base->epoch()} {
+    : base{&checked(from)},
+      walk{*base},
+      epoch{base->epoch()},
+      field{LeafField(*base), walk, epoch} {
     look_at_places();
 }
 
@@ -51,19 +55,78 @@ void HighOrderData::look_at_places() {
         const Member& leaf = *way.back().member;
         curved |= leaf.rule == nullptr && base->geometry_degree(task, leaf.element) != 1;
     });
-    if (curved) places.emplace(LeafPlaces(*base), walk, base->epoch());
+    if (curved) places.emplace(LeafPlaces(*base), walk, epoch);
 }
 
 /// The same share of the diameter of the domain as the tolerance is of the range of the data.
 double HighOrderData::default_position_tolerance(double tolerance) const {
-    const double range = field.records.extent();
+    const double range = field.summary.extent();
     const double share = range > 0 ? tolerance / range : 1e-3;
-    return std::min(share * places->records.extent(), std::numeric_limits<double>::max());
+    return std::min(share * places->summary.extent(), std::numeric_limits<double>::max());
 }
 
 const LeafCorners& HighOrderData::corners() const {
-    std::call_once(corners_made_, [this] { corners_.emplace(walk, field.records); });
+    std::call_once(corners_made_, [this] { corners_.emplace(walk); });
     return *corners_;
+}
+
+GatheredLeaves HighOrderData::gather(const LeafChoice::Chooses& chooses,
+                                     LeafChoice::Needs needs) const {
+    if (base->epoch() != epoch) {
+        throw GridError("the grid has changed since its polynomials were read");
+    }
+    LeafChoice choice(walk, chooses, needs);
+    LeafRecords of_field(LeafField(*base), walk, choice, field.summary);
+    GatheredLeaves leaves{std::move(choice), std::move(of_field), std::nullopt};
+    if (places) leaves.places.emplace(LeafPlaces(*base), walk, leaves.choice, places->summary);
+    leaves.choice.finish();
+    return leaves;
+}
+
+namespace {
+
+/// Whether leaves that some values are drawn in are among those of others.
+bool covers(const HighOrderData::DrawnValues& kept, const HighOrderData::DrawnValues& values) {
+    if (!kept || !values) return !kept;
+    return std::all_of(values->begin(), values->end(), [&](const auto& range) {
+        return std::any_of(kept->begin(), kept->end(), [&](const auto& around) {
+            return around[0] <= range[0] && range[1] <= around[1];
+        });
+    });
+}
+
+}  // namespace
+
+GatheredLeaves HighOrderData::gather_none() const {
+    GatheredLeaves none{{}, LeafRecords(field.summary), std::nullopt};
+    if (places) none.places.emplace(places->summary);
+    return none;
+}
+
+std::shared_ptr<const GatheredLeaves> HighOrderData::gathered(const DrawnValues& values) const {
+    if (values && values->empty()) return std::make_shared<const GatheredLeaves>(gather_none());
+    const std::lock_guard lock(gathering_);
+    if (last_ && covers(last_values_, values)) return last_;
+    last_.reset();
+    const auto passes = [&](std::size_t leaf, NodeKey) {
+        return std::any_of(values->begin(), values->end(), [&](const auto& range) {
+            return field.summary.may_take(leaf, range[0], range[1]);
+        });
+    };
+    bool some = !values;
+    for (std::size_t leaf = 0; !some && leaf < field.summary.ranges.size(); ++leaf) {
+        some = passes(leaf, 0);
+    }
+    const LeafChoice::Chooses chooses = values ? passes : LeafChoice::Chooses();
+    last_ = std::make_shared<const GatheredLeaves>(some ? gather(chooses) : gather_none());
+    last_values_ = values;
+    return last_;
+}
+
+std::size_t HighOrderData::memory_bytes() const {
+    const std::lock_guard lock(gathering_);
+    return field.memory_bytes() + (places ? places->memory_bytes() : 0) +
+           (corners_ ? corners_->memory_bytes() : 0) + (last_ ? last_->memory_bytes() : 0);
 }
 
 namespace {
@@ -98,37 +161,31 @@ HighOrder::HighOrder(const Hierarchy<float>& base)
 HighOrder::HighOrder(const Hierarchy<double>& base)
     : data_{std::make_shared<const engine::HighOrderData>(base)} {}
 
-int HighOrder::greatest_degree() const { return data_->field.records.greatest_degree(); }
+int HighOrder::greatest_degree() const { return data_->field.summary.greatest_degree; }
 int HighOrder::geometry_degree() const {
-    return data_->places ? data_->places->records.greatest_degree() : 1;
+    return data_->places ? data_->places->summary.greatest_degree : 1;
 }
-double HighOrder::jump() const { return data_->field.records.jump(); }
+double HighOrder::jump() const { return data_->field.summary.jump(); }
 double HighOrder::position_jump() const {
-    return data_->places ? data_->places->records.jump() : 0;
+    return data_->places ? data_->places->summary.jump() : 0;
 }
 
 double HighOrder::least_tolerance(double position_tolerance) const {
     // A half of a part has a quarter of its beta.
-    const auto at_limit = [](const engine::LeafRecords& records) {
-        double beta = 0;
-        for (const engine::LeafPolynomial& leaf : records.leaves()) {
-            beta = std::max(beta, records.facts_of(leaf).beta);
-        }
-        return std::ldexp(engine::flat_share * beta, -2 * VirtualOptions{}.depth);
+    const auto at_limit = [](const engine::LeafSummary& all) {
+        return std::ldexp(engine::flat_share * all.greatest_beta, -2 * VirtualOptions{}.depth);
     };
-    const engine::LeafRecords& records = data_->field.records;
-    double least = std::max(at_limit(records), 2e-12 * records.magnitude());
+    const engine::LeafSummary& field = data_->field.summary;
+    double least = std::max(at_limit(field), 2e-12 * field.magnitude());
     if (data_->places && position_tolerance == 0) {
         // Positions are within the same share of the domain.
         const double of_domain = data_->default_position_tolerance(1);
-        least = std::max(least, at_limit(data_->places->records) / of_domain);
+        least = std::max(least, at_limit(data_->places->summary) / of_domain);
     }
     return std::max(least, double{std::numeric_limits<float>::min()});
 }
 
-std::size_t HighOrder::memory_bytes() const {
-    return data_->field.memory_bytes() + (data_->places ? data_->places->memory_bytes() : 0);
-}
+std::size_t HighOrder::memory_bytes() const { return data_->memory_bytes(); }
 
 VirtualRefinement::VirtualRefinement(const HighOrder& data, const VirtualOptions& options)
     : Hierarchy<double>(engine::facts_of(*data.data_)) {
@@ -158,7 +215,7 @@ void VirtualRefinement::coarse(Task* task, std::size_t i, Coarse& coarse, Family
 NodeMask VirtualRefinement::coarse_values(Task* task, std::size_t i, std::size_t corners,
                                           double* out) const {
     return elements_->coarse_values(task, i,
-                                    {out, corners * elements_->data().field.records.components()});
+                                    {out, corners * elements_->data().field.summary.components});
 }
 
 NodeMask VirtualRefinement::enter(Task* task, const Handle& element, const Rule& /*rule*/,

@@ -40,8 +40,9 @@ void VirtualElements::look_at_parts(const VirtualElement& e, const Drawn& drawn,
     const LeafPolynomial& leaf = records.leaves()[e.leaf];
     const ShapeParts& in_leaf = leaf.parts();
     const ShapeParts& shape = *e.state->shape;
-    const bool flat_inside = is_flat(drawn, looked.facts.beta, e.level,
-                                     [&] { return lens_->is_fine(e.leaf, e.places(), e.level); });
+    const bool flat_inside = is_flat(drawn, looked.facts.beta, e.level, [&] {
+        return lens_->is_fine(leaf.number, e.places(), e.level);
+    });
     const bool flat_parts = flat_inside && in_leaf.is_box;
     std::array<FaceMask, max_corners> faces;
     for (std::size_t k = 0; k < shape.corners; ++k) {
@@ -73,14 +74,14 @@ void VirtualElements::look_at_parts(const VirtualElement& e, const Drawn& drawn,
             const NetFacts facts = records.facts_on(on);
             looked.facts.least = std::min(looked.facts.least, facts.least);
             looked.facts.greatest = std::max(looked.facts.greatest, facts.greatest);
-            flat =
-                is_flat(drawn, facts.beta, e.level + on.shift, [&] { return lens_->is_fine(on); });
+            flat = is_flat(drawn, facts.beta, e.level + on.shift,
+                           [&] { return lens_->is_fine(records.in_owner(on)); });
         } else if (!flat) {
             const double beta = norm_of(own.size(), [&](std::size_t c) {
                 return ElementNets::beta_on_part(e, own[c], part);
             });
             flat = is_flat(drawn, beta, e.level,
-                           [&] { return lens_->is_fine(e.leaf, of_part, e.level); });
+                           [&] { return lens_->is_fine(leaf.number, of_part, e.level); });
         }
         if (flat && part.count > 2) {
             part_around[flat_faces] = number;
@@ -157,6 +158,24 @@ void VirtualElements::leaf_values(OpenTask& task, const VirtualElement& e, const
     const NetPart point = part_at(leaf.factors(), std::span(&at, 1), e.level + 1);
     for (std::size_t c = first; c < components; ++c) {
         restrict_net(records.net(leaf, c), leaf.degree, leaf.factors(), point, out + c);
+    }
+}
+
+void VirtualElements::new_values(Task* task, const VirtualElement& e, NodeMask which,
+                                 double* values) const {
+    if (which == 0) return;
+    const bool divided = e.leaf == VirtualElement::no_leaf;
+    const Rule& rule = divided ? *e.state->rule : *e.state->shape->rule;
+    double* const out = values + e.state->shape->corners * components_;
+    const RedSplitKeys keys = divided ? split_keys_of(e.state->key, rule) : RedSplitKeys{};
+    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+        if ((which >> n & 1U) == 0) continue;
+        if (divided) {
+            std::copy_n(field_.nodes->values(keys[e.state->shape->corners + n]), components_,
+                        out + n * components_);
+        } else {
+            leaf_values(static_cast<OpenTask&>(*task), e, field_, n, out + n * components_);
+        }
     }
 }
 

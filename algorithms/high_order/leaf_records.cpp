@@ -36,52 +36,173 @@ std::array<std::uint8_t, 3> frame_corners(const CornerKeys& keys, const ShapePar
     return frame;
 }
 
-/// Places of the corners of a frame. \param count 2 or 3
-std::array<Place, 3> places_of(const ShapeParts& shape, const std::array<std::uint8_t, 3>& frame) {
-    std::array<Place, 3> places;
-    for (std::size_t i = 0; i < 3; ++i) places[i] = shape.reference_corner(frame[i]);
-    return places;
-}
-
 }  // namespace
 
-std::array<Place, 4> corners_of(const ShapeParts& shape, const ShapePart& part) {
-    std::array<Place, 4> corners{};
-    for (std::size_t i = 0; i < part.count; ++i) {
-        corners[i] = shape.reference_corner(part.corner[i]);
+double* NetStore::add(std::size_t count, std::uint32_t needed_until, std::uint32_t now) {
+    if (count > left_) {
+        std::erase_if(blocks_, [&](const Block& block) {
+            const bool goes = block.needed_until < now;
+            if (goes) size_ -= block.size;
+            return goes;
+        });
+        constexpr std::size_t most = std::size_t{1} << 14U;
+        left_ = std::max(count, std::min(size_, most));
+        blocks_.push_back({std::make_unique_for_overwrite<double[]>(left_), left_, 0});
+        size_ += left_;
     }
-    return corners;
+    Block& block = blocks_.back();
+    block.needed_until = std::max(block.needed_until, needed_until);
+    double* const added = block.room.get() + (block.size - left_);
+    left_ -= count;
+    return added;
 }
 
 LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk)
-    : components_{function.components()},
-      drawn_{function.drawn()},
-      least_(components_, std::numeric_limits<double>::infinity()),
-      greatest_(components_, -std::numeric_limits<double>::infinity()) {
-    std::vector<double> values;
-    walk.for_each([&](Task* task, std::span<const BaseElement> way) {
-        if (way.back().member->rule == nullptr) add_leaf(function, task, way, values);
-    });
-    std::size_t leaf = 0;
-    walk.for_each([&](Task*, std::span<const BaseElement> way) {
-        if (way.back().member->rule == nullptr) add_parts(way, leaves_[leaf++]);
-    });
-    for (std::size_t l = 0; l < leaves_.size(); ++l) {
-        for (std::size_t part = 0; part < leaves_[l].parts().parts.size(); ++part) {
-            raise_jump(l, jump_on(leaves_[l], part));
-        }
+    : components_{function.components()}, drawn_{function.drawn()} {
+    take_leaves(function, walk, nullptr);
+}
+
+/// Calls a function with the owners of the records on a leaf.
+template <class Function>
+void LeafRecords::for_each_owner(const LeafPolynomial& leaf, const Function& function) const {
+    for (std::size_t part = 0; part < leaf.parts().parts.size(); ++part) {
+        const std::int32_t record = of_part_[leaf.first + part].record;
+        function(records_[static_cast<std::size_t>(record)].leaf);
     }
 }
 
-/// Takes the polynomial of the last element on the way.
-void LeafRecords::add_leaf(const LeafFunction& function, Task* task,
-                           std::span<const BaseElement> way, std::vector<double>& values) {
-    const BaseElement& e = way.back();
-    const int degree = function.degree(task, e.member->element);
-    if (degree < 1 || degree > max_degree) {
-        throw GridError(BaseWalk::name(way) + " has the " + function.degree_name() + " " +
-                        std::to_string(degree) + ", not 1 to " + std::to_string(max_degree));
+void LeafRecords::read_all(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary,
+                           const std::function<void(std::uint32_t leaf)>& ready) {
+    finish();
+    std::vector<std::uint32_t> needed_until(leaves_.size());
+    std::vector<std::array<std::uint32_t, 2>> late;  // when a leaf is ready, if not when it is read
+    for (const LeafPolynomial& leaf : leaves_) {
+        std::uint32_t when = leaf.number;
+        for_each_owner(leaf, [&](std::uint32_t owner) { when = std::max(when, owner); });
+        const auto need = [&](std::uint32_t of) {
+            needed_until[of] = std::max(needed_until[of], when);
+        };
+        need(leaf.number);
+        for_each_owner(leaf, need);
+        if (when != leaf.number) late.push_back({when, leaf.number});
     }
+    std::sort(late.begin(), late.end());
+    auto next = late.begin();
+    std::vector<bool> waits(leaves_.size());
+    for (const auto& [when, leaf] : late) waits[leaf] = true;
+    std::uint32_t number = 0;
+    walk.for_each([&](Task* task, std::span<const BaseElement> way) {
+        if (way.back().member->rule != nullptr) return;
+        LeafPolynomial& leaf = leaves_[number];
+        take_polynomial(function, task, way, leaf, needed_until[number]);
+        summary.greatest_degree = std::max(summary.greatest_degree, int{leaf.degree});
+        const std::size_t size = net_size(leaf.degree, leaf.factors());
+        for (std::size_t c = 0; c < components_; ++c) {
+            const auto [least, greatest] = std::minmax_element(net(leaf, c), net(leaf, c) + size);
+            summary.least[c] = std::min(summary.least[c], *least);
+            summary.greatest[c] = std::max(summary.greatest[c], *greatest);
+        }
+        if (!waits[number]) ready(number);
+        for (; next != late.end() && (*next)[0] == number; ++next) ready((*next)[1]);
+        ++number;
+    });
+}
+
+LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk,
+                         const LeafChoice& choice, const LeafSummary& summary)
+    : components_{function.components()}, drawn_{function.drawn()} {
+    if (choice.size() == 0) return;
+    take_leaves(function, walk, &choice);
+    for (LeafPolynomial& leaf : leaves_) leaf.jump = summary.jumps[leaf.number];
+    finish();
+}
+
+/// Takes leaves that are looked at and owners, and finds the records of the first ones.
+/// \param choice null: all leaves, without polynomials
+void LeafRecords::take_leaves(const LeafFunction& function, const BaseWalk& walk,
+                              const LeafChoice* choice) {
+    std::uint32_t number = 0;
+    if (choice != nullptr) {
+        leaves_.resize(choice->size());
+        if (!choice->all()) record_of_ = choice->parts();
+    }
+    const auto chosen = [&](const BaseElement& e) {
+        if (choice == nullptr) return number;
+        const std::uint32_t* const at = choice->find(e.path);
+        return at == nullptr ? LeafChoice::none : *at;
+    };
+    walk.for_each([&](Task* task, std::span<const BaseElement> way) {
+        const BaseElement& e = way.back();
+        if (e.member->rule != nullptr) return;
+        const std::uint32_t own = chosen(e);
+        const auto index =
+            own == LeafChoice::none ? static_cast<std::uint32_t>(leaves_.size()) : own;
+        const bool owns = claim_parts(function, task, way, choice, index);
+        if (owns || own != LeafChoice::none) {
+            if (index >= leaves_.size()) leaves_.emplace_back();
+            LeafPolynomial& leaf = leaves_[index];
+            leaf.number = number;
+            leaf.shape = e.shape->shape;
+            leaf.degree = static_cast<std::uint8_t>(degree_of(function, task, way));
+            if (choice != nullptr) take_polynomial(function, task, way, leaf);
+        }
+        ++number;
+    });
+    if (record_of_.size() == 0) return;
+    number = 0;
+    walk.for_each([&](Task*, std::span<const BaseElement> way) {
+        if (way.back().member->rule != nullptr) return;
+        const std::uint32_t own = chosen(way.back());
+        if (own != LeafChoice::none) add_parts(way, leaves_[own]);
+        ++number;
+    });
+}
+
+/// \throw GridError where a degree is not 1 to 8
+int LeafRecords::degree_of(const LeafFunction& function, Task* task,
+                           std::span<const BaseElement> way) {
+    const int degree = function.degree(task, way.back().member->element);
+    if (degree >= 1 && degree <= max_degree) return degree;
+    throw GridError(BaseWalk::name(way) + " has the " + function.degree_name() + " " +
+                    std::to_string(degree) + ", not 1 to " + std::to_string(max_degree));
+}
+
+/// Makes the last element on the way the owner of those of its parts that may have records, and no
+/// owner that goes before it. \return whether there is one
+bool LeafRecords::claim_parts(const LeafFunction& function, Task* task,
+                              std::span<const BaseElement> way, const LeafChoice* choice,
+                              std::uint32_t index) {
+    const BaseElement& e = way.back();
+    const bool all = choice == nullptr || choice->all();
+    if (!all && !choice->may_have_record(e)) return false;
+    int degree = 0;
+    bool owns = false;
+    for (std::size_t p = 0; p < e.shape->parts.size(); ++p) {
+        const ShapePart& part = e.shape->parts[p];
+        const NodeKey key = part_key(e.key, part);
+        std::uint32_t* const number =
+            all ? record_of_.insert(key, LeafChoice::none).first : record_of_.find(key);
+        if (number == nullptr) continue;
+        if (degree == 0) degree = degree_of(function, task, way);
+        if (*number == LeafChoice::none) {
+            *number = static_cast<std::uint32_t>(records_.size());
+            records_.emplace_back();
+        } else {
+            const std::uint32_t owner = records_[*number].leaf;
+            if (owner == index || leaves_[owner].degree <= degree) continue;
+        }
+        records_[*number] = {index, frame_corners(e.key, part), static_cast<std::uint8_t>(p)};
+        owns = true;
+    }
+    return owns;
+}
+
+/// Takes the polynomial of the last element on the way.
+void LeafRecords::take_polynomial(const LeafFunction& function, Task* task,
+                                  std::span<const BaseElement> way, LeafPolynomial& leaf,
+                                  std::uint32_t needed_until) {
+    const BaseElement& e = way.back();
+    const int degree = leaf.degree;
     const Factors& factors = e.shape->factors;
     thread_local std::map<std::pair<Shape, int>, std::vector<Point>> all_points;
     std::vector<Point>& points = all_points[{e.shape->shape, degree}];
@@ -89,44 +210,26 @@ void LeafRecords::add_leaf(const LeafFunction& function, Task* task,
         points =
             e.shape->shape == Shape::pyramid ? pyramid_points(degree) : net_points(degree, factors);
     }
+    thread_local std::vector<double> values;
     values.resize(points.size() * components_);
     function.evaluate(task, e.member->element, points, values);
-    LeafPolynomial leaf;
-    leaf.net = nets_.size();
-    leaf.degree = static_cast<std::uint8_t>(degree);
-    leaf.shape = e.shape->shape;
-    greatest_degree_ = std::max(greatest_degree_, degree);
+    double* own = nets_.add(components_ * leaf.size(), needed_until, leaf.number);
+    leaf.net = own;
     double jump = 0;
-    for (std::size_t c = 0; c < components_; ++c) {
-        const std::size_t at = nets_.size();
+    for (std::size_t c = 0; c < components_; ++c, own += leaf.size()) {
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const double value = values[i * components_ + c];
-            if (!std::isfinite(value)) {
+            own[i] = values[i * components_ + c];
+            if (!std::isfinite(own[i])) {
                 throw GridError(function.operation() + " gives no finite number in " +
                                 BaseWalk::name(way));
             }
-            nets_.push_back(value);
         }
-        to_coefficients(nets_.data() + at, degree, factors);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            least_[c] = std::min(least_[c], nets_[at + i]);
-            greatest_[c] = std::max(greatest_[c], nets_[at + i]);
-        }
+        to_coefficients(own, degree, factors);
         if (leaf.shape != Shape::pyramid) continue;
-        nets_.resize(at + leaf.size());
-        const double* const own = nets_.data() + at;
-        const double off = put_triangle_nets(own, degree, nets_.data() + at + points.size());
+        const double off = put_triangle_nets(own, degree, own + points.size());
         if (c < drawn_) jump = norm_of(2, [&](std::size_t i) { return i == 0 ? jump : off; });
     }
     leaf.jump = detail::float_above(jump);
-    const auto number = static_cast<std::uint32_t>(leaves_.size());
-    for (const ShapePart& part : e.shape->parts) {
-        const auto [owner, is_new] = owner_.insert(part_key(e.key, part), number);
-        if (!is_new && leaves_[*owner].degree > degree) *owner = number;
-    }
-    leaf_of_.insert(e.path, number);
-    leaves_.push_back(leaf);
-    corners_.push_back(e.key);
 }
 
 /// Finds the records of the last element on the way, a leaf.
@@ -160,196 +263,38 @@ void LeafRecords::add_parts(std::span<const BaseElement> way, LeafPolynomial& le
     }
 }
 
-/// The record of a part of a leaf with this key; it is made when it is first asked for.
-std::int32_t LeafRecords::record_of(NodeKey key) {
-    const auto [number, is_new] =
-        record_number_.insert(key, static_cast<std::int32_t>(records_.size()));
-    if (!is_new) return *number;
-    const std::uint32_t owner = *owner_.find(key);
-    const std::vector<ShapePart>& parts = leaves_[owner].parts().parts;
-    std::uint8_t part = 0;
-    while (part_key(corners_[owner], parts[part]) != key) ++part;
-    records_.push_back({owner, frame_corners(corners_[owner], parts[part]), part});
-    return *number;
-}
-
 /// Looks for the largest edge or face of a leaf around, from the coarse element down.
-OnRecord LeafRecords::around(std::span<const BaseElement> way, std::span<const Place> points) {
-    std::vector<std::array<Place, 4>> seen(way.size());  // from each element on the way
-    std::copy(points.begin(), points.end(), seen.back().begin());
-    const int last = static_cast<int>(way.size()) - 1;
-    const auto index = [](int j) { return static_cast<std::size_t>(j); };
-    for (int j = last; j > 0; --j) {
-        const BaseElement& father = way[index(j - 1)];
-        const Rule& rule = *father.member->rule;
-        const Child& child = rule.children[way[index(j)].number];
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            seen[index(j - 1)][i] =
-                father.shape->in_father(rule, child, seen[index(j)][i], last - j);
-        }
-    }
-    for (int j = 0; j <= last; ++j) {
-        const BaseElement& e = way[index(j)];
-        FaceMask faces = ~FaceMask{0};
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            faces &= e.shape->faces_at(seen[index(j)][i], last - j);
-        }
-        const int number = e.shape->part_in(faces);
-        if (number < 0) continue;
-        const ShapePart& part = e.shape->parts[static_cast<std::size_t>(number)];
+OnRecord LeafRecords::around(std::span<const BaseElement> way,
+                             std::span<const Place> points) const {
+    OnRecord on;
+    const auto finds = [&](const BaseElement& e, std::size_t number, std::span<const Place> at,
+                           int level) {
+        const ShapePart& part = e.shape->parts[number];
         const NodeKey key = part_key(e.key, part);
-        if (owner_.find(key) == nullptr) continue;
+        const std::uint32_t* const record = record_of_.find(key);
+        if (record == nullptr || *record == LeafChoice::none) return false;
         const std::array<Place, 3> corners = places_of(*e.shape, frame_corners(e.key, part));
         const PartFrame frame = frame_between(std::span(corners).first(frame_size(part)));
-        OnRecord on{record_of(key), last - j, last - j, {}, points.size()};
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            on.at[i] = frame(seen[index(j)][i], last - j);
-        }
-        return on;
-    }
-    return {};
-}
-
-OnRecord LeafRecords::on_part(const LeafPolynomial& leaf, std::size_t part,
-                              std::span<const Place> points, int level) const {
-    const PartRecord& of = of_part_[leaf.first + part];
-    const RecordMap& map = maps_[of.map];
-    OnRecord on{of.record, map.shift, level + map.shift, {}, points.size()};
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        const Place& x = points[k];
-        for (std::size_t i = 0; i < 2; ++i) {
-            const auto& step = map.step[i];
-            on.at[k][i] = map.low[i] * (std::int64_t{1} << level) + step[0] * x[0] +
-                          step[1] * x[1] + step[2] * x[2];
-        }
-    }
+        on = {static_cast<std::int32_t>(*record), level, level, {}, points.size()};
+        for (std::size_t i = 0; i < at.size(); ++i) on.at[i] = frame(at[i], level);
+        return true;
+    };
+    look_around(way, points, finds);
     return on;
 }
 
-const Factors& LeafRecords::factors_of(const Record& record) const {
-    return leaves_[record.leaf].parts().parts[record.part].factors;
-}
-
-/// Copies the coefficients on an edge or face of a leaf.
-void LeafRecords::take(const LeafPolynomial& leaf, std::size_t component,
-                       std::span<const Place> frame, const Factors& part, double* out) const {
-    const double* const own = net(leaf, component);
-    if (leaf.shape == Shape::pyramid) {
-        const double* const triangles = own + net_size(leaf.degree, leaf.factors());
-        return take_pyramid_part(own, triangles, leaf.degree, frame, part, out);
-    }
-    take_part(own, leaf.degree, leaf.factors(), frame, part, out);
-}
-
-/// Puts the coefficients of a record in its frame. \return its degree
-int LeafRecords::put_record(const OnRecord& at, std::size_t component, NetRoom& to) const {
-    const Record& record = records_[static_cast<std::size_t>(at.record)];
-    const LeafPolynomial& owner = leaves_[record.leaf];
-    const ShapeParts& shape = owner.parts();
-    const ShapePart& part = shape.parts[record.part];
-    const std::array<Place, 3> frame = places_of(shape, record.corner);
-    take(owner, component, std::span(frame).first(frame_size(part)), part.factors, to.data());
-    return owner.degree;
-}
-
-NetFacts LeafRecords::facts_on(const OnRecord& part) const {
-    const Factors& factors = factors_of(records_[static_cast<std::size_t>(part.record)]);
-    const NetPart there = part_at(factors, std::span(part.at).first(part.count), part.level);
-    return joined_facts(drawn_, [&](std::size_t c) {
-        NetRoom whole;
-        NetRoom own;
-        const int degree = put_record(part, c, whole);
-        restrict_net(whole.data(), degree, factors, there, own.data());
-        return net_facts(own.data(), degree, there.factors);
-    });
-}
-
-NetFacts LeafRecords::facts_on(const LeafPolynomial& leaf, std::size_t part) const {
-    const ShapeParts& shape = leaf.parts();
-    const std::array<Place, 4> corners = corners_of(shape, shape.parts[part]);
-    return facts_on(on_part(leaf, part, std::span(corners).first(shape.parts[part].count), 0));
-}
-
-void LeafRecords::values_at(const OnRecord& point, double* out) const {
-    NetRoom whole;
-    const Factors& factors = factors_of(records_[static_cast<std::size_t>(point.record)]);
-    const NetPart there = part_at(factors, std::span(point.at).first(1), point.level);
-    for (std::size_t c = 0; c < components_; ++c) {
-        const int degree = put_record(point, c, whole);
-        restrict_net(whole.data(), degree, factors, there, out + c);
-    }
-}
-
-std::uint32_t LeafRecords::in_owner(const OnRecord& part, std::array<Place, 4>& points) const {
-    const Record& record = records_[static_cast<std::size_t>(part.record)];
-    const std::array<Place, 3> frame = places_of(leaves_[record.leaf].parts(), record.corner);
-    for (std::size_t i = 0; i < part.count; ++i) {
-        for (std::size_t d = 0; d < 3; ++d) {
-            points[i][d] = frame[0][d] * (std::int64_t{1} << part.level) +
-                           part.at[i][0] * (frame[1][d] - frame[0][d]) +
-                           part.at[i][1] * (frame[2][d] - frame[0][d]);
-        }
-    }
-    return record.leaf;
-}
-
-void LeafRecords::raise_jump(std::size_t leaf, double jump) {
-    leaves_[leaf].jump = std::max(leaves_[leaf].jump, detail::float_above(jump));
-}
-
-double LeafRecords::jump() const {
-    float jump = 0;
-    for (const LeafPolynomial& leaf : leaves_) jump = std::max(jump, leaf.jump);
-    return static_cast<double>(jump);
-}
-
-/// Compares the coefficients of a leaf on one of its parts with those of the record there, both
-/// raised to one degree: no two polynomials differ by more than their coefficients do.
-double LeafRecords::jump_on(const LeafPolynomial& leaf, std::size_t number) const {
-    const ShapeParts& shape = leaf.parts();
-    const ShapePart& part = shape.parts[number];
-    const std::array<Place, 4> corners = corners_of(shape, part);
-    const OnRecord on = on_part(leaf, number, std::span(corners).first(part.count), 0);
-    const Factors& factors = factors_of(records_[static_cast<std::size_t>(on.record)]);
-    const NetPart there = part_at(factors, std::span(on.at).first(part.count), on.level);
-    // The leaf's own coefficients in the same order.
-    std::array<Place, 4> sorted{};
-    for (std::size_t i = 0; i < part.count; ++i) sorted[there.number[i]] = corners[i];
-    std::array<std::vector<double>, 3> differences;
-    for (std::size_t c = 0; c < drawn_; ++c) {
-        NetRoom whole;
-        NetRoom other;
-        NetRoom own;
-        const int degree = put_record(on, c, whole);
-        restrict_net(whole.data(), degree, factors, there, other.data());
-        take(leaf, c, std::span(sorted).first(frame_size(part)), there.factors, own.data());
-        const int greatest = std::max(degree, int{leaf.degree});
-        differences[c] = elevated(own.data(), leaf.degree, there.factors, greatest);
-        const auto of_record = elevated(other.data(), degree, there.factors, greatest);
-        for (std::size_t i = 0; i < of_record.size(); ++i) differences[c][i] -= of_record[i];
-    }
-    double jump = 0;
-    for (std::size_t i = 0; i < differences[0].size(); ++i) {
-        jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) { return differences[c][i]; }));
-    }
-    return jump;
-}
-
 std::size_t LeafRecords::memory_bytes() const {
-    return leaves_.capacity() * sizeof(LeafPolynomial) + nets_.capacity() * sizeof(double) +
+    return leaves_.capacity() * sizeof(LeafPolynomial) + nets_.memory_bytes() +
            records_.capacity() * sizeof(Record) + maps_.capacity() * sizeof(RecordMap) +
-           of_part_.capacity() * sizeof(PartRecord) + leaf_of_.memory_bytes();
+           of_part_.capacity() * sizeof(PartRecord);
 }
 
 void LeafRecords::finish() {
     leaves_.shrink_to_fit();
-    nets_.shrink_to_fit();
     records_.shrink_to_fit();
     maps_.shrink_to_fit();
     of_part_.shrink_to_fit();
-    corners_ = {};
-    owner_ = {};
-    record_number_ = {};
+    record_of_ = {};
     map_number_ = {};
 }
 

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The polynomials of all leaves, those of the field or of positions (leaf_functions.hpp), and one
-// record for each edge and face that leaves share.
+// The polynomials of leaves, those of the field or of positions (leaf_functions.hpp), and one
+// record for each edge and face that leaves share: of all leaves, or of those that a drawing looks
+// at.
 //
 // The owner of an edge or face of a leaf, among all leaves that have it in their closure, is the
 // one with the largest edge or face that it lies in; among equals that of the least degree, then
@@ -13,16 +14,16 @@
 // Consequence: all leaves around an edge or face see the same bits on it, whatever their degrees,
 // sizes, shapes, frames and data.
 // Every node of the hierarchy that is inside an edge or face of a larger leaf is in a record, too.
+// Owners are chosen among all leaves, whichever are looked at: these see the same bits.
 #pragma once
 
-#include <algorithm>
 #include <map>
+#include <memory>
 #include <tuple>
 
-#include <high_order/base_walk.hpp>
-#include <high_order/leaf_functions.hpp>
+#include <high_order/leaf_choice.hpp>
+#include <high_order/leaf_summary.hpp>
 #include <high_order/pyramid.hpp>
-#include <nestgrid/detail/key_table.hpp>
 
 namespace nestgrid::engine {
 
@@ -35,11 +36,22 @@ struct OnRecord {
     std::size_t count = 0;
 };
 
+/// An edge or face of a leaf, or a part of one.
+struct PartOfLeaf {
+    std::uint32_t leaf = 0;  ///< its number among all leaves
+    int level = 0;           ///< the corners are in units of 2^-level of the leaf
+    std::array<Place, 4> corner{};
+    std::size_t count = 0;
+
+    std::span<const Place> corners() const { return std::span(corner).first(count); }
+};
+
 /// A leaf and its polynomial.
 struct LeafPolynomial {
-    std::uint64_t net = 0;    ///< of component 0
-    std::uint32_t first = 0;  ///< of its parts in the list of all
-    float jump = 0;           ///< the greatest difference from the records and nodes around
+    const double* net = nullptr;  ///< of component 0, then those of others
+    std::uint32_t first = 0;      ///< of its parts in the list of all
+    std::uint32_t number = 0;     ///< among all leaves, in the order of the walk
+    float jump = 0;               ///< the greatest difference from the records and nodes around
     Shape shape = Shape::point;
     std::uint8_t degree = 1;
 
@@ -53,26 +65,59 @@ struct LeafPolynomial {
     }
 };
 
+/// Room for coefficients, which stay where they are.
+class NetStore {
+public:
+    static constexpr std::uint32_t always = 0xFFFFFFFFU;
+    /// \param now what was needed until before this may go
+    double* add(std::size_t count, std::uint32_t needed_until = always, std::uint32_t now = 0);
+    std::size_t memory_bytes() const { return size_ * sizeof(double); }
+
+private:
+    struct Block {
+        std::unique_ptr<double[]> room;
+        std::size_t size;
+        std::uint32_t needed_until;
+    };
+    std::vector<Block> blocks_;
+    std::size_t left_ = 0;  // in the last block
+    std::size_t size_ = 0;  // of all blocks
+};
+
 class LeafRecords {
 public:
-    /// Asks the function once for each leaf.
-    /// \throw GridError where a degree is not 1 to 8, or a value not finite, and names the leaf
+    /// Those of all leaves, in the order of the walk, before read_all().
+    /// \throw GridError where a degree is not 1 to 8, and names the leaf
     LeafRecords(const LeafFunction& function, const BaseWalk& walk);
+    /// Asks the function once for each leaf, in the order of the walk, and forgets what around()
+    /// needs. A polynomial is there until the last leaf that needs it is ready.
+    /// \param summary gets degrees and ranges of components
+    /// \param ready called for each leaf when its polynomial and those of the owners around are
+    ///        there; that of a leaf that owns a record is there by then
+    /// \throw GridError where a value is not finite, and names the leaf
+    void read_all(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary,
+                  const std::function<void(std::uint32_t leaf)>& ready);
+    /// None.
+    explicit LeafRecords(const LeafSummary& summary)
+        : components_{summary.components}, drawn_{summary.drawn} {}
+    /// Those of leaves that are chosen, in the order of their choice, and of the owners around.
+    /// Asks the function once for each. Where the choice has no records, polynomials alone.
+    /// \throw GridError
+    LeafRecords(const LeafFunction& function, const BaseWalk& walk, const LeafChoice& choice,
+                const LeafSummary& summary);
 
     std::size_t components() const { return components_; }
-    /// How many components are drawn: beta and jumps are norms of these together, ranges are those
-    /// of component 0.
+    /// As in LeafSummary.
     std::size_t drawn() const { return drawn_; }
     const std::vector<LeafPolynomial>& leaves() const { return leaves_; }
-    std::size_t leaf_at(NodeKey path) const { return *leaf_of_.find(path); }
     const double* net(const LeafPolynomial& leaf, std::size_t component = 0) const {
-        return nets_.data() + leaf.net + component * leaf.size();
+        return leaf.net + component * leaf.size();
     }
     /// Points on a part of a leaf. \param points at most 4, in units of 2^-level of the leaf
     OnRecord on_part(const LeafPolynomial& leaf, std::size_t part, std::span<const Place> points,
                      int level) const;
-    /// Points on an edge or face of the last element on the way.
-    OnRecord around(std::span<const BaseElement> way, std::span<const Place> points);
+    /// Points on an edge or face of the last element on the way, before read_all().
+    OnRecord around(std::span<const BaseElement> way, std::span<const Place> points) const;
     /// Beta and range in a leaf, without the records around.
     NetFacts facts_of(const LeafPolynomial& leaf) const {
         return joined_facts(drawn_, [&](std::size_t c) {
@@ -83,28 +128,16 @@ public:
     NetFacts facts_on(const OnRecord& part) const;
     /// Beta and range on a part of a leaf, read from its record.
     NetFacts facts_on(const LeafPolynomial& leaf, std::size_t part) const;
-    /// Puts the points of a part of a record as points of its owner. \return the owner, a leaf
-    std::uint32_t in_owner(const OnRecord& part, std::array<Place, 4>& points) const;
+    /// How far a leaf is from the records around.
+    float jump_of(const LeafPolynomial& leaf) const;
+    std::uint32_t owner_of(const OnRecord& part) const {
+        return records_[static_cast<std::size_t>(part.record)].leaf;
+    }
+    /// A part of a record as one of its owner.
+    PartOfLeaf in_owner(const OnRecord& part) const;
     /// Values of all components at one point.
     void values_at(const OnRecord& point, double* out) const;
-
-    double jump() const;
-    void raise_jump(std::size_t leaf, double jump);
-    int greatest_degree() const { return greatest_degree_; }
-    double least() const { return least_[0]; }
-    double greatest() const { return greatest_[0]; }
-    /// From the least to the greatest of what is drawn, and its greatest magnitude.
-    double extent() const {
-        return norm_of(drawn_, [&](std::size_t c) { return greatest_[c] - least_[c]; });
-    }
-    double magnitude() const {
-        return norm_of(drawn_, [&](std::size_t c) {
-            return std::max(std::abs(least_[c]), std::abs(greatest_[c]));
-        });
-    }
     std::size_t memory_bytes() const;
-    /// Forgets what around() needs.
-    void finish();
 
 private:
     struct Record {
@@ -127,35 +160,37 @@ private:
         std::uint32_t map;
     };
 
-    void add_leaf(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
-                  std::vector<double>& values);
+    void take_leaves(const LeafFunction& function, const BaseWalk& walk, const LeafChoice* choice);
+    static int degree_of(const LeafFunction& function, Task* task,
+                         std::span<const BaseElement> way);
+    bool claim_parts(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
+                     const LeafChoice* choice, std::uint32_t index);
+    void take_polynomial(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
+                         LeafPolynomial& leaf, std::uint32_t needed_until = NetStore::always);
+    template <class Function>
+    void for_each_owner(const LeafPolynomial& leaf, const Function& function) const;
     void add_parts(std::span<const BaseElement> way, LeafPolynomial& leaf);
     double jump_on(const LeafPolynomial& leaf, std::size_t part) const;
     void take(const LeafPolynomial& leaf, std::size_t component, std::span<const Place> frame,
               const Factors& part, double* out) const;
-    std::int32_t record_of(NodeKey key);
     const Factors& factors_of(const Record& record) const;
     int put_record(const OnRecord& at, std::size_t component, NetRoom& net) const;
+    void finish();
 
     std::size_t components_;
     std::size_t drawn_;
     std::vector<LeafPolynomial> leaves_;
-    std::vector<double> nets_;
+    NetStore nets_;
     std::vector<Record> records_;
-    std::vector<RecordMap> maps_;               // each once
-    std::vector<PartRecord> of_part_;           // of the parts of all leaves
-    KeyTable<NodeKey, std::uint32_t> leaf_of_;  // by path
-    int greatest_degree_ = 1;
-    std::vector<double> least_;  // of each component
-    std::vector<double> greatest_;
-    // Until finish():
-    std::vector<CornerKeys> corners_;                // of the leaves
-    KeyTable<NodeKey, std::uint32_t> owner_;         // of parts of leaves
-    KeyTable<NodeKey, std::int32_t> record_number_;  // of those
+    std::vector<RecordMap> maps_;      // each once
+    std::vector<PartRecord> of_part_;  // of the parts of the leaves that are looked at
+    // Needed by around():
+    KeyTable<NodeKey, std::uint32_t> record_of_;  // by the names of parts
     std::map<RecordMap, std::uint32_t> map_number_;
 };
 
-/// The corners of a part of a reference element.
+/// The corners of a part of a reference element, and those of the frame of a part.
 std::array<Place, 4> corners_of(const ShapeParts& shape, const ShapePart& part);
+std::array<Place, 3> places_of(const ShapeParts& shape, const std::array<std::uint8_t, 3>& frame);
 
 }  // namespace nestgrid::engine

@@ -8,40 +8,37 @@
 
 namespace nestgrid::engine {
 
-LeafCorners::LeafCorners(const BaseWalk& walk, const LeafRecords& records)
-    : records_{&records}, nets_(records.leaves().size()) {
-    walk.for_each([&](Task*, std::span<const BaseElement> way) {
+LeafCorners::LeafCorners(const BaseWalk& walk) {
+    const auto add = [&](Task*, std::span<const BaseElement> way) {
         const BaseElement& e = way.back();
         if (e.member->rule != nullptr) return;
-        Net& net = nets_[records.leaf_at(e.path)];
-        const bool pyramid = e.shape->shape == Shape::pyramid;
+        Leaf& leaf = leaves_.emplace_back();
+        leaf.shape = e.shape->shape;
         for (std::size_t k = 0; k < max_corners; ++k) {
             // The upper face of a pyramid's box is its apex.
-            const std::size_t corner = pyramid ? std::min<std::size_t>(k, 4) : k;
+            const std::size_t corner =
+                leaf.shape == Shape::pyramid ? std::min<std::size_t>(k, 4) : k;
             if (corner >= e.shape->corners) break;
             const std::size_t at = net_corner(1, e.shape->factors, k);
-            for (std::size_t d = 0; d < 3; ++d) net[d][at] = e.x[corner][d];
+            for (std::size_t d = 0; d < 3; ++d) leaf.net[d][at] = e.x[corner][d];
         }
-    });
+    };
+    walk.for_each(add, BaseWalk::Positions::yes);
 }
 
 Point LeafCorners::position(std::size_t leaf, const Place& at, int level) const {
-    const LeafPolynomial& of = records_->leaves()[leaf];
+    const Leaf& of = leaves_[leaf];
     Point local = point_at(at, level);
     if (of.shape == Shape::pyramid) local = collapsed(local);
     Point x;
     for (std::size_t d = 0; d < 3; ++d) {
-        x[d] = net_value(nets_[leaf][d].data(), 1, of.factors(), local);
+        x[d] = net_value(of.net[d].data(), 1, parts_of(of.shape).factors, local);
     }
     return x;
 }
 
-LensSizes::LensSizes(const LensRequest& lens, const LeafRecords& records,
-                     const LeafCorners& corners)
-    : lens_{lens},
-      share_{std::max(1.0, 3.125 * lens.slope)},
-      records_{&records},
-      corners_{&corners} {
+LensSizes::LensSizes(const LensRequest& lens, const LeafCorners& corners)
+    : lens_{lens}, share_{std::max(1.0, 3.125 * lens.slope)}, corners_{&corners} {
     if (lens.finest > 0 && lens.finest <= lens.coarsest) return;
     throw InvalidInput(
         "a lens on data of higher degree says how large elements are in it: 0 < finest <= "
@@ -54,20 +51,13 @@ double LensSizes::greatest_size(const Point& x) const {
 }
 
 bool LensSizes::is_fine(std::size_t leaf, std::span<const Place> corners, int level) const {
-    std::array<Point, max_corners> x;
-    double diameter = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        x[i] = corners_->position(leaf, corners[i], level);
-        for (std::size_t k = 0; k < i; ++k) diameter = std::max(diameter, norm(x[i] - x[k]));
-    }
-    return std::all_of(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(corners.size()),
+    std::array<Point, max_corners> room;
+    const auto x = std::span(room).first(corners.size());
+    std::transform(corners.begin(), corners.end(), x.begin(),
+                   [&](const Place& corner) { return corners_->position(leaf, corner, level); });
+    const double diameter = diameter_of(x);
+    return std::all_of(x.begin(), x.end(),
                        [&](const Point& at) { return share_ * diameter <= greatest_size(at); });
-}
-
-bool LensSizes::is_fine(const OnRecord& part) const {
-    std::array<Place, 4> corners{};
-    const std::uint32_t leaf = records_->in_owner(part, corners);
-    return is_fine(leaf, std::span<const Place>(corners).first(part.count), part.level);
 }
 
 /// What an element that stops has on its faces is smaller than it, and as near to the node, so that

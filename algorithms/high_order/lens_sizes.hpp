@@ -20,28 +20,33 @@ namespace nestgrid::engine {
 /// The corners of all leaves in space.
 class LeafCorners {
 public:
-    LeafCorners(const BaseWalk& walk, const LeafRecords& records);
+    explicit LeafCorners(const BaseWalk& walk);
 
-    /// A point of a leaf, whose edges are straight. \param at in units of 2^-level
+    /// A point of a leaf, whose edges are straight. \param leaf in the order of the walk
+    /// \param at in units of 2^-level
     Point position(std::size_t leaf, const Place& at, int level) const;
+    std::size_t memory_bytes() const { return leaves_.capacity() * sizeof(Leaf); }
 
 private:
-    using Net = std::array<std::array<double, max_corners>, 3>;  // of each coordinate, of degree 1
-
-    const LeafRecords* records_;
-    std::vector<Net> nets_;
+    struct Leaf {
+        Shape shape = Shape::point;
+        std::array<std::array<double, max_corners>, 3> net{};  // of each coordinate, of degree 1
+    };
+    std::vector<Leaf> leaves_;
 };
 
 class LensSizes {
 public:
-    /// Borrows the records and the corners.
+    /// Borrows the corners.
     /// \throw InvalidInput where the sizes of the lens are not 0 < finest <= coarsest
-    LensSizes(const LensRequest& lens, const LeafRecords& records, const LeafCorners& corners);
+    LensSizes(const LensRequest& lens, const LeafCorners& corners);
 
-    /// Whether a part of a leaf with these corners is fine. \param corners in units of 2^-level
+    /// Whether a part of a leaf with these corners is fine. \param leaf in the order of the walk
+    /// \param corners in units of 2^-level
     bool is_fine(std::size_t leaf, std::span<const Place> corners, int level) const;
-    /// The same for a part on a record.
-    bool is_fine(const OnRecord& part) const;
+    bool is_fine(const PartOfLeaf& part) const {
+        return is_fine(part.leaf, part.corners(), part.level);
+    }
     /// Whether elements of the hierarchy may stop at a node. \param size as in RealNode
     bool may_stop(double size, const Point& node) const;
 
@@ -50,7 +55,6 @@ private:
 
     LensRequest lens_;
     double share_;
-    const LeafRecords* records_;
     const LeafCorners* corners_;
 };
 

@@ -26,22 +26,29 @@ public:
 
     PolynomialPoints(const HighOrder& data, std::span<const Point> points, Beside beside)
         : data_{data.data_.get()},
-          leaves_(data,
-                  {.tolerance = std::numeric_limits<double>::max(), .position_tolerance = near()}),
+          leaves_(data, {.tolerance = std::numeric_limits<double>::max(),
+                         .position_tolerance = near(),
+                         .values = looked_at()}),
           found_(points.size()) {
+        if (data_->places) polynomials_ = data_->gathered(std::nullopt);
         std::vector<std::size_t> all(points.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         probed = engine::probe<double>(leaves_, points);
         take(probed, all, points, Beside::nearest);
-        if (data_->places) look_beside(points, beside);
+        if (data_->places) {
+            look_beside(points, beside);
+        } else {
+            gather_found();
+        }
     }
 
     /// The values of all components at a point that was found, and its place in the leaf.
     void put_values(std::size_t i) {
-        const LeafPolynomial& leaf = data_->field.records.leaves()[found_[i].leaf];
+        const LeafRecords& records = polynomials_->field;
+        const LeafPolynomial& leaf = records.leaves()[found_[i].leaf];
         for (std::size_t c = 0; c < probed.components; ++c) {
-            probed.values[i * probed.components + c] = net_value(
-                data_->field.records.net(leaf, c), leaf.degree, leaf.factors(), found_[i].place);
+            probed.values[i * probed.components + c] =
+                net_value(records.net(leaf, c), leaf.degree, leaf.factors(), found_[i].place);
         }
         if (!data_->places) return;
         const auto [x, y, z] = found_[i].place;
@@ -54,17 +61,22 @@ public:
         std::vector<Point> all(found_.size(), Point{0, 0, 0});
         std::vector<std::size_t> order(found_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
+        const auto number_of = [&](std::size_t i) {
+            const bool none = found_[i].leaf == VirtualElement::no_leaf;
+            return none ? LeafChoice::none : polynomials_->field.leaves()[found_[i].leaf].number;
+        };
         std::stable_sort(order.begin(), order.end(),
-                         [&](auto a, auto b) { return found_[a].leaf < found_[b].leaf; });
+                         [&](auto a, auto b) { return number_of(a) < number_of(b); });
         auto next = order.begin();
         std::uint32_t number = 0;  // leaves have the order of the walk
-        data_->walk.for_each([&](Task*, std::span<const BaseElement> way) {
+        const auto add = [&](Task*, std::span<const BaseElement> way) {
             if (way.back().member->rule != nullptr) return;
-            for (; next != order.end() && found_[*next].leaf == number; ++next) {
+            for (; next != order.end() && number_of(*next) == number; ++next) {
                 all[*next] = gradient(*next, way.back());
             }
             ++number;
-        });
+        };
+        data_->walk.for_each(add, BaseWalk::Positions::yes);
         return all;
     }
 
@@ -72,19 +84,25 @@ public:
 
 private:
     struct Found {
-        std::uint32_t leaf = VirtualElement::no_leaf;
+        std::uint32_t leaf = VirtualElement::no_leaf;  // among those that are gathered
+        std::uint64_t path = 0;                        // of a straight leaf
         Point place{};  // in the coordinates of the leaf's net: in a pyramid the box's
         double depth = -std::numeric_limits<double>::infinity();  // in the leaf
 
         bool inside() const { return depth > -1e-9; }
     };
 
-    double near() const { return data_->places ? 1e-3 * data_->places->records.extent() : 0; }
+    /// Straight leaves are not divided, so that no polynomial is needed before they are found.
+    HighOrderData::DrawnValues looked_at() const {
+        if (data_->places) return std::nullopt;
+        return HighOrderData::DrawnValues(std::in_place);
+    }
+    double near() const { return data_->places ? 1e-3 * data_->places->summary.extent() : 0; }
 
     /// Looks for what is not inside a leaf that was found: on curved boundaries, and beside faces
     /// that are drawn straight.
     void look_beside(std::span<const Point> points, Beside beside) {
-        for (double by = 2 * near(); by < data_->places->records.extent(); by *= 8) {
+        for (double by = 2 * near(); by < data_->places->summary.extent(); by *= 8) {
             for (std::size_t side = 0; side < 6; ++side) {
                 std::vector<std::size_t> rest;
                 std::vector<Point> around;
@@ -101,6 +119,26 @@ private:
             if (beside == Beside::inside) return;
         }
     }
+    /// Reads the polynomials of the leaves that were found, which are straight.
+    void gather_found() {
+        KeyTable<NodeKey, std::uint32_t> number;
+        for (const Found& found : found_) {
+            if (found.leaf != VirtualElement::no_leaf) number.insert(NodeKey{found.path}, 0);
+        }
+        std::uint32_t count = 0;
+        const auto chooses = [&](std::size_t, NodeKey path) {
+            std::uint32_t* const at = number.find(NodeKey{static_cast<std::uint64_t>(path)});
+            if (at != nullptr) *at = count++;
+            return at != nullptr;
+        };
+        polynomials_ = std::make_shared<const GatheredLeaves>(
+            data_->gather(chooses, LeafChoice::Needs::polynomials));
+        for (Found& found : found_) {
+            if (found.leaf != VirtualElement::no_leaf) {
+                found.leaf = *number.find(NodeKey{found.path});
+            }
+        }
+    }
     /// Takes the leaves around some points for those that they stand for, where these lie deeper in
     /// them than in what was found before.
     /// \param number of the point that each stands for, among `points`
@@ -110,13 +148,14 @@ private:
         for (std::size_t i = 0; i < number.size(); ++i) {
             if (!result.found(i)) continue;
             const VirtualElement& e = elements[result.element_of[i]];
-            const LeafPolynomial& leaf = data_->field.records.leaves()[e.leaf];
-            const bool pyramid = leaf.shape == Shape::pyramid;
-            const Point at = in_leaf(leaf.parts(), e, result.reference[i]);
-            Found found{e.leaf, pyramid ? collapsed(at) : at};
+            const Shape shape = data_->places ? polynomials_->field.leaves()[e.leaf].shape
+                                              : result.shape_of[result.element_of[i]];
+            const bool pyramid = shape == Shape::pyramid;
+            const Point at = in_leaf(parts_of(shape), e, result.reference[i]);
+            Found found{e.leaf, e.way, pyramid ? collapsed(at) : at};
             const std::size_t n = number[i];
             if (data_->places) found.place = found_in(e.leaf, points[n], found.place);
-            found.depth = face_distance(pyramid ? Shape::hexahedron : leaf.shape, found.place);
+            found.depth = face_distance(pyramid ? Shape::hexahedron : shape, found.place);
             if (accepted == Beside::inside && !found.inside()) continue;
             if (found.depth <= found_[n].depth) continue;
             found_[n] = found;
@@ -143,7 +182,7 @@ private:
     }
     /// Newton's method for the place of a point in a curved leaf, from one that is near.
     Point found_in(std::uint32_t leaf, const Point& x, const Point& near) const {
-        const LeafRecords& records = data_->places->records;
+        const LeafRecords& records = *polynomials_->places;
         const LeafPolynomial& of = records.leaves()[leaf];
         Point at = near;
         for (int step = 0; step < 20; ++step) {
@@ -165,7 +204,7 @@ private:
     }
     /// Derivatives of the position in a curved leaf along the axes.
     std::array<Point, 3> axes_at(std::uint32_t leaf, const Point& at) const {
-        const LeafRecords& records = data_->places->records;
+        const LeafRecords& records = *polynomials_->places;
         const LeafPolynomial& of = records.leaves()[leaf];
         std::array<Point, 3> along{};
         for (std::size_t d = 0; d < 3; ++d) {
@@ -175,12 +214,12 @@ private:
         return along;
     }
     Point gradient(std::size_t i, const BaseElement& e) const {
-        const LeafPolynomial& leaf = data_->field.records.leaves()[found_[i].leaf];
+        const LeafPolynomial& leaf = polynomials_->field.leaves()[found_[i].leaf];
         const Factors& factors = leaf.factors();
         Point at = found_[i].place;
         // The apex of a pyramid has no gradient: that of a point below.
         if (leaf.shape == Shape::pyramid) at[2] = std::min(at[2], 1 - 1e-6);
-        const Point inner = net_gradient(data_->field.records.net(leaf), leaf.degree, factors, at);
+        const Point inner = net_gradient(polynomials_->field.net(leaf), leaf.degree, factors, at);
         std::array<Point, 3> along{};  // derivatives of the position
         if (data_->places) along = axes_at(found_[i].leaf, at);
         for (std::size_t d = 0; d < 3 && !data_->places; ++d) {
@@ -199,6 +238,7 @@ private:
     /// At a tolerance that all leaves are within, so that elements are those of the hierarchy, and
     /// where leaves are curved parts of them.
     VirtualRefinement leaves_;
+    std::shared_ptr<const GatheredLeaves> polynomials_;
     std::vector<Found> found_;
 };
 

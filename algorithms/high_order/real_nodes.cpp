@@ -3,282 +3,27 @@
 #include <high_order/real_nodes.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include <nestgrid/algorithms/detail/round_up.hpp>
-#include <nestgrid/detail/interpolate.hpp>
 
 namespace nestgrid::engine {
 
-namespace {
-
-/// Sums of few terms are this much larger at most than they are computed.
-constexpr double rounding = 1 + 1e-12;
-
-double diameter_of(std::span<const Point> corners) {
-    double diameter = 0;
-    for (const Point& a : corners) {
-        for (const Point& b : corners) diameter = std::max(diameter, norm(a - b));
+RealNodes::HalvedPart::HalvedPart(const PartOfLeaf& part)
+    : leaf{part.leaf},
+      level{static_cast<std::uint8_t>(part.level)},
+      count{static_cast<std::uint8_t>(part.count)} {
+    for (std::size_t i = 0; i < part.count; ++i) {
+        for (std::size_t d = 0; d < 3; ++d) {
+            corner[i][d] = static_cast<std::int32_t>(part.corner[i][d]);
+        }
     }
-    return diameter;
 }
 
-void raise(float& number, double to) {
-    number = std::max(number, detail::float_above(to * rounding));
-}
-
-}  // namespace
-
-/// Fills the table. Numbers of nodes are those of RealNodes::nodes_.
-class RealNodes::Preroll {
-public:
-    Preroll(RealNodes& nodes, const BaseWalk& walk, LeafRecords& records)
-        : nodes_{&nodes},
-          records_{&records},
-          components_{records.components()},
-          drawn_{records.drawn()} {
-        walk.for_each([this](Task*, std::span<const BaseElement> way) {
-            if (way.back().member->rule == nullptr) add_leaf(way);
-        });
-        walk.for_each([this](Task*, std::span<const BaseElement> way) {
-            if (way.back().member->rule != nullptr) add_split(way);
-        });
-        std::stable_sort(splits_.begin(), splits_.end(),
-                         [](const Split& a, const Split& b) { return a.level < b.level; });
-        deviation_.resize(nodes.nodes_.size());
+PartOfLeaf RealNodes::part_halved(const RealNode& node) const {
+    const HalvedPart& half = parts_[node.halves];
+    PartOfLeaf part{half.leaf, half.level, {}, half.count};
+    for (std::size_t i = 0; i < half.corner.size(); ++i) {
+        std::copy(half.corner[i].begin(), half.corner[i].end(), part.corner[i].begin());
     }
-
-    void run() {
-        for (const Split& split : splits_) put_offsets(split);
-        for (const Leaf& leaf : leaves_) seed(leaf);
-        sweep();
-    }
-
-private:
-    RealNode& node(std::uint32_t number) { return nodes_->nodes_[number]; }
-    double value(std::uint32_t number, std::size_t c) const {
-        return nodes_->values_[number * components_ + c];
-    }
-
-    /// Makes the corners of a leaf known. A corner inside a larger leaf's part has the value of the
-    /// record, any other that of the first leaf that has it.
-    void add_leaf(std::span<const BaseElement> way) {
-        const BaseElement& e = way.back();
-        Leaf leaf{{}, records_->leaf_at(e.path)};
-        const LeafPolynomial& from = records_->leaves()[leaf.leaf];
-        for (std::size_t k = 0; k < e.shape->corners; ++k) {
-            const auto fresh = static_cast<std::uint32_t>(nodes_->nodes_.size());
-            const auto [at, is_new] = nodes_->number_.insert(e.key[k], fresh);
-            leaf.corner[k] = *at;
-            if (is_new) {
-                nodes_->nodes_.emplace_back();
-                for (std::size_t c = 0; c < components_; ++c) {
-                    nodes_->values_.push_back(
-                        records_->net(from, c)[net_corner(from.degree, from.factors(), k)]);
-                }
-            }
-            if (node(leaf.corner[k]).hangs) continue;
-            const Place place = e.shape->reference_corner(k);
-            const OnRecord hangs_on = records_->around(way, std::span(&place, 1));
-            if (hangs_on.record < 0) continue;
-            node(leaf.corner[k]).hangs = true;
-            records_->values_at(hangs_on, nodes_->values_.data() + leaf.corner[k] * components_);
-        }
-        leaves_.push_back(leaf);
-    }
-
-    void add_split(std::span<const BaseElement> way) {
-        const BaseElement& e = way.back();
-        const RedSplitKeys keys = split_keys_of(e.key, *e.member->rule);
-        Split split{{}, e.member->rule, static_cast<int>(way.size())};
-        for (std::size_t n = 0; n < e.shape->node.size(); ++n) {
-            split.node[n] = *nodes_->number_.find(keys[n]);  // a corner of a leaf
-        }
-        const double diameter = diameter_of(std::span(e.x).first(e.shape->corners));
-        for (const std::uint32_t number : made_by(split)) raise(node(number).size, diameter);
-        for (const ShapePart& part : e.shape->parts) put_beta(way, part, split);
-        splits_.push_back(split);
-    }
-
-    /// Tells the node of a split that halves a part, and hangs, how far that part is from flat. A
-    /// triangle has no node: the edges that children have in it, and the faces of leaves, tell.
-    void put_beta(std::span<const BaseElement> way, const ShapePart& part, const Split& split) {
-        const ShapeParts& shape = *way.back().shape;
-        const std::uint8_t n = node_halving(*split.rule, part);
-        if (n == no_new_node) return;
-        RealNode& made = node(split.node[shape.corners + n]);
-        if (!made.hangs || made.halves > 0) return;
-        const std::array<Place, 4> places = corners_of(shape, part);
-        const OnRecord on = records_->around(way, std::span(places).first(part.count));
-        if (on.record < 0) return;
-        made.shift = static_cast<std::uint8_t>(on.shift);
-        made.beta = records_->facts_on(on).beta;
-        made.halves = static_cast<std::uint32_t>(nodes_->parts_.size());
-        nodes_->parts_.push_back(on);
-    }
-
-    /// Fathers come first: what moves the parents is known.
-    void put_offsets(const Split& split) {
-        const auto corners = static_cast<std::size_t>(split.rule->corner_count());
-        std::array<std::array<double, max_split_nodes>, 3> u;
-        for (std::size_t c = 0; c < drawn_; ++c) {
-            for (std::size_t n = 0; n < corners + split.rule->new_nodes.size(); ++n) {
-                u[c][n] = value(split.node[n], c);
-            }
-        }
-        for (std::size_t n = 0; n < split.rule->new_nodes.size(); ++n) {
-            const Stencil& stencil = split.rule->new_nodes[n];
-            const std::uint32_t number = split.node[corners + n];
-            RealNode& made = node(number);
-            double off = norm_of(drawn_, [&](std::size_t c) {
-                return u[c][corners + n] - nestgrid::detail::interpolate(stencil, u[c].data(), 1);
-            });
-            double moved = 0;
-            for (std::size_t i = 0; i < stencil.count; ++i) {
-                moved = std::max(moved, deviation_[split.node[stencil.parent[i]]]);
-            }
-            off += moved;
-            raise(made.off, off);
-            if (!made.hangs) continue;
-            deviation_[number] = std::max(deviation_[number], off * rounding);
-            raise(made.stop, flat_share * made.beta);
-        }
-    }
-
-    /// Tells the corners of a leaf what they cannot know from nodes.
-    void seed(const Leaf& leaf) {
-        const LeafPolynomial& of = records_->leaves()[leaf.leaf];
-        const std::size_t corners = of.parts().corners;
-        NetFacts facts = records_->facts_of(of);
-        double error = facts.beta;
-        double flatness = facts.beta;
-        for (std::size_t part = 0; part < of.parts().parts.size(); ++part) {
-            const NetFacts there = records_->facts_on(of, part);
-            flatness = std::max(flatness, there.beta);
-            facts.least = std::min(facts.least, there.least);
-            facts.greatest = std::max(facts.greatest, there.greatest);
-        }
-        double lo = std::numeric_limits<double>::infinity();
-        double hi = -lo;
-        double jump = 0;
-        double moved = 0;
-        for (std::size_t k = 0; k < corners; ++k) {
-            lo = std::min(lo, value(leaf.corner[k], 0));
-            hi = std::max(hi, value(leaf.corner[k], 0));
-            const std::size_t own = net_corner(of.degree, of.factors(), k);
-            jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) {
-                                return records_->net(of, c)[own] - value(leaf.corner[k], c);
-                            }));
-            moved = std::max(moved, deviation_[leaf.corner[k]]);
-        }
-        records_->raise_jump(leaf.leaf, jump);
-        // What is inside parts is that of the records, which are off by of.jump.
-        error += drawn_ == 1 ? jump : jump + static_cast<double>(of.jump);
-        if (drawn_ == 1) error = std::max({error, facts.greatest - hi, lo - facts.least});
-        error += moved;
-        for (std::size_t k = 0; k < corners; ++k) {
-            RealNode& corner = node(leaf.corner[k]);
-            raise(corner.bound, error);
-            raise(corner.stop, flat_share * flatness);
-        }
-    }
-
-    /// Fine to coarse, level by level: `bound` without the node's own part is that of finer nodes.
-    void sweep() {
-        for (std::size_t end = splits_.size(); end > 0;) {
-            std::size_t begin = end;
-            while (begin > 0 && splits_[begin - 1].level == splits_[end - 1].level) --begin;
-            const auto level = std::span(splits_).subspan(begin, end - begin);
-            for (const Split& split : level) add_own_part(split);
-            for (const Split& split : level) put_stop(split);
-            for (const Split& split : level) raise_corners(split);
-            end = begin;
-        }
-    }
-
-    static std::span<const std::uint32_t> made_by(const Split& split) {
-        return std::span(split.node)
-            .subspan(static_cast<std::size_t>(split.rule->corner_count()),
-                     split.rule->new_nodes.size());
-    }
-
-    /// Once for each node, when all finer nodes are done.
-    void add_own_part(const Split& split) {
-        done_.resize(nodes_->nodes_.size(), false);
-        for (const std::uint32_t number : made_by(split)) {
-            if (done_[number]) continue;
-            done_[number] = true;
-            RealNode& made = node(number);
-            made.bound = detail::float_above(
-                (static_cast<double>(made.bound) + static_cast<double>(made.off)) * rounding);
-        }
-    }
-
-    /// On an element that stops, U differs from the interpolant of its true corner values by at
-    /// most `below`, and those from P_S U by the offsets of the corners that S holds at: by at most
-    /// `bound` in all. The triangles leave P_S U by twice its affine residual, which is that of the
-    /// true values, moved by at most 5 / 2 bound on boxes, 8 / 3 on prisms, bound on pyramids, and
-    /// 0 on simplices. Together that is 6 bound + 2 residual, or 19 / 3, or 3, or 1.
-    void put_stop(const Split& split) {
-        const auto corners = static_cast<std::size_t>(split.rule->corner_count());
-        const Shape shape = split.rule->parent;
-        const Factors factors = factors_of(shape);
-        const bool pyramid = shape == Shape::pyramid;
-        const double share = pyramid                  ? 3
-                             : factors.count == 1     ? 1
-                             : factors.all_segments() ? 6
-                                                      : 19.0 / 3;
-        const double residual = norm_of(drawn_, [&](std::size_t c) {
-            std::array<double, max_corners> u;
-            for (std::size_t k = 0; k < corners; ++k) u[k] = value(split.node[k], c);
-            return pyramid ? pyramid_residual(u)
-                           : fit_affine(std::span(u).first(corners), factors).residual;
-        });
-        double below = 0;
-        for (const std::uint32_t made : made_by(split)) {
-            below = std::max(below, static_cast<double>(node(made).bound));
-        }
-        for (const std::uint32_t made : made_by(split)) {
-            raise(node(made).stop, share * below + 2 * residual);
-        }
-    }
-
-    void raise_corners(const Split& split) {
-        float stop = 0;
-        float bound = 0;
-        float size = 0;
-        for (const std::uint32_t number : made_by(split)) {
-            const RealNode& made = node(number);
-            size = std::max(size, made.size);
-            stop = std::max(stop, made.stop);
-            bound = std::max(bound, made.bound);
-        }
-        for (const std::uint32_t number :
-             std::span(split.node).first(static_cast<std::size_t>(split.rule->corner_count()))) {
-            RealNode& corner = node(number);
-            corner.stop = std::max(corner.stop, stop);
-            corner.bound = std::max(corner.bound, bound);
-            raise(corner.size, 1.25 * static_cast<double>(size));
-        }
-    }
-
-    RealNodes* nodes_;
-    LeafRecords* records_;
-    std::size_t components_;
-    std::size_t drawn_;
-    std::vector<Leaf> leaves_;
-    std::vector<Split> splits_;      // coarse to fine
-    std::vector<double> deviation_;  // how far P_S U may be from U at a node that hangs
-    std::vector<bool> done_;
-};
-
-RealNodes::RealNodes(std::uint64_t epoch, const BaseWalk& walk, LeafRecords& records)
-    : records_{&records}, epoch_{epoch} {
-    Preroll(*this, walk, records).run();
-    nodes_.shrink_to_fit();
-    parts_.shrink_to_fit();
-    values_.shrink_to_fit();
+    return part;
 }
 
 double RealNodes::offset_bound(NodeKey key) const {
@@ -297,7 +42,7 @@ double RealNodes::bound(const Rule&, std::span<const NodeKey> keys) const {
 }
 
 std::size_t RealNodes::memory_bytes() const {
-    return nodes_.capacity() * sizeof(RealNode) + parts_.capacity() * sizeof(OnRecord) +
+    return nodes_.capacity() * sizeof(RealNode) + parts_.capacity() * sizeof(HalvedPart) +
            values_.capacity() * sizeof(double) + number_.memory_bytes();
 }
 

@@ -45,9 +45,11 @@ struct RealNode {
 /// The table of all nodes of the hierarchy, which is also the guide of searches.
 class RealNodes final : public Bounds {
 public:
-    /// Borrows the records.
     /// \param epoch of the hierarchy
-    RealNodes(std::uint64_t epoch, const BaseWalk& walk, LeafRecords& records);
+    /// \param summary of the leaves, which is set
+    /// \throw GridError as LeafRecords
+    RealNodes(std::uint64_t epoch, const LeafFunction& function, const BaseWalk& walk,
+              LeafSummary& summary);
 
     const RealNode* find(NodeKey key) const {
         const std::uint32_t* const at = number_.find(key);
@@ -55,19 +57,19 @@ public:
     }
     /// Values of all components at a node, which exists.
     const double* values(NodeKey key) const {
-        return values_.data() + *number_.find(key) * records_->components();
+        return values_.data() + *number_.find(key) * components_;
     }
     std::size_t size() const { return nodes_.size(); }
-    /// The part of a record that a node halves.
-    const OnRecord& part_halved(const RealNode& node) const { return parts_[node.halves]; }
+    /// The part of a leaf that a node halves.
+    PartOfLeaf part_halved(const RealNode& node) const;
     std::size_t memory_bytes() const;
 
     double offset_bound(NodeKey node) const override;
     double bound(const Rule& rule, std::span<const NodeKey> nodes) const override;
     const HangingNodes* hanging() const override { return nullptr; }
     bool made_for(std::uint64_t epoch) const override { return epoch == epoch_; }
-    double least() const override { return records_->least(); }
-    double greatest() const override { return records_->greatest(); }
+    double least() const override { return least_; }
+    double greatest() const override { return greatest_; }
 
 private:
     struct Split {
@@ -75,16 +77,24 @@ private:
         const Rule* rule;
         int level;
     };
-    struct Leaf {
-        std::array<std::uint32_t, max_corners> corner;
-        std::size_t leaf;
+    struct HalvedPart {
+        std::uint32_t leaf = 0;
+        std::uint8_t level = 0;
+        std::uint8_t count = 0;
+        std::array<std::array<std::int32_t, 3>, 4> corner{};
+
+        HalvedPart() = default;
+        explicit HalvedPart(const PartOfLeaf& part);
     };
+    using LeafNodes = std::array<std::uint32_t, max_corners>;  // at the corners of a leaf
     class Preroll;
 
-    const LeafRecords* records_;
     std::uint64_t epoch_;
+    std::size_t components_;
+    double least_ = 0;  // of component 0
+    double greatest_ = 0;
     std::vector<RealNode> nodes_;
-    std::vector<OnRecord> parts_{1};  // that nodes halve; the first one is none
+    std::vector<HalvedPart> parts_{1};  // that nodes halve; the first one is none
     std::vector<double> values_;
     KeyTable<NodeKey, std::uint32_t> number_;
 };

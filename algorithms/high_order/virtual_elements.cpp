@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/detail/interpolate.hpp>
@@ -21,6 +22,9 @@ struct VirtualElements::Places {
 
 namespace {
 
+/// VirtualOptions::values of a drawing that looks at no polynomial.
+const HighOrderData::DrawnValues no_values{std::in_place};
+
 /// \param name of the tolerance \param of what the extent is
 void require_tolerance(double tolerance, const std::string& name, double extent,
                        const std::string& of) {
@@ -36,30 +40,33 @@ void require_tolerance(double tolerance, const std::string& name, double extent,
 }  // namespace
 
 /// Positions within the tolerance that the options ask for; nothing where leaves are straight.
-auto VirtualElements::places_within(const HighOrderData& data, const VirtualOptions& options)
-    -> std::optional<Drawn> {
-    if (!data.places) return std::nullopt;
+auto VirtualElements::places_within(const VirtualOptions& options) const -> std::optional<Drawn> {
+    if (!data_->places) return std::nullopt;
     const double own = options.position_tolerance;
-    return Drawn(*data.places, own == 0 ? data.default_position_tolerance(options.tolerance) : own);
+    return Drawn(*data_->places, *leaves_->places,
+                 own == 0 ? data_->default_position_tolerance(options.tolerance) : own);
+}
+
+bool VirtualElements::is_linear(const HighOrderData& data) {
+    const LeafSummary& all = data.field.summary;
+    return all.greatest_degree == 1 && all.jump() <= 1e-12 * all.magnitude() && !data.places;
 }
 
 VirtualElements::VirtualElements(std::shared_ptr<const HighOrderData> data,
                                  const VirtualOptions& options)
     : data_{std::move(data)},
-      field_{data_->field, options.tolerance},
-      places_{places_within(*data_, options)},
-      components_{field_.records->components()},
+      linear_{is_linear(*data_)},
+      leaves_{data_->gathered(linear_ ? no_values : options.values)},
+      field_{data_->field, leaves_->field, options.tolerance},
+      places_{places_within(options)},
+      components_{field_.summary->components},
       depth_{options.depth},
-      lens_{options.lens ? std::make_shared<const LensSizes>(*options.lens, *field_.records,
-                                                             data_->corners())
+      lens_{options.lens ? std::make_shared<const LensSizes>(*options.lens, data_->corners())
                          : nullptr},
       criterion_{field_, places_, lens_} {
-    const LeafRecords& records = *field_.records;
-    linear_ =
-        records.greatest_degree() == 1 && records.jump() <= 1e-12 * records.magnitude() && !places_;
-    require_tolerance(field_.tolerance, "tolerance", records.extent(), "range of the data");
+    require_tolerance(field_.tolerance, "tolerance", field_.summary->extent(), "range of the data");
     if (places_) {
-        require_tolerance(places_->tolerance, "tolerance of positions", places_->records->extent(),
+        require_tolerance(places_->tolerance, "tolerance of positions", places_->summary->extent(),
                           "diameter of the domain");
     }
     if (depth_ < 1 || depth_ > 16) {
@@ -104,7 +111,9 @@ auto VirtualElements::places(Family& family, std::size_t count) -> Places& {
 /// Sets the number of the leaf, where the hierarchy does not divide the element.
 void VirtualElements::set_leaf(VirtualElement& e, const Member& member, ElementState& state) const {
     if (member.rule != nullptr) return;
-    e.leaf = static_cast<std::uint32_t>(field_.records->leaf_at(state.path));
+    const std::uint32_t* const chosen = leaves_->choice.find(state.path);
+    e.leaf = chosen == nullptr ? VirtualElement::left_out : *chosen;
+    if (chosen == nullptr) e.way = static_cast<std::uint64_t>(state.path);
     for (std::size_t k = 0; k < state.shape->corners; ++k) {
         state.at[k] = state.shape->reference_corner(k);
     }
@@ -269,7 +278,12 @@ bool VirtualElements::hangs_flat(const Drawn& drawn, NodeKey key) const {
 /// A leaf, or an element below one.
 void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, const double* u,
                                     Member& member, InnerBounds& inner) const {
-    if (linear_) return;  // values at corners say all
+    if (e.leaf == VirtualElement::left_out) {
+        if (linear_) return;                                   // values at corners say all
+        inner.error = std::numeric_limits<float>::infinity();  // nobody is to draw it
+        inner.limited = true;
+        return;
+    }
     const ShapeParts& shape = *e.state->shape;
     const std::span<const double> corners(u, shape.corners);
     const Looked looked = look(task, e, field_, corners);
@@ -303,30 +317,12 @@ void VirtualElements::describe_leaf(OpenTask& task, const VirtualElement& e, con
         std::max({0.0, looked.facts.greatest - *hi, *lo - looked.facts.least}) + field_.rounding);
 }
 
-void VirtualElements::new_values(Task* task, const VirtualElement& e, NodeMask which,
-                                 double* values) const {
-    if (which == 0) return;
-    const bool divided = e.leaf == VirtualElement::no_leaf;
-    const Rule& rule = divided ? *e.state->rule : *e.state->shape->rule;
-    double* const out = values + e.state->shape->corners * components_;
-    const RedSplitKeys keys = divided ? split_keys_of(e.state->key, rule) : RedSplitKeys{};
-    for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
-        if ((which >> n & 1U) == 0) continue;
-        if (divided) {
-            std::copy_n(field_.nodes->values(keys[e.state->shape->corners + n]), components_,
-                        out + n * components_);
-        } else {
-            leaf_values(static_cast<OpenTask&>(*task), e, field_, n, out + n * components_);
-        }
-    }
-}
-
 /// Faces on the boundary of the domain, where the hierarchy tells those of its elements.
 unsigned VirtualElements::boundary(Task* task, const VirtualElement& e) const {
     const ElementState& state = *e.state;
     unsigned faces = 0;
     const ShapeParts& around =
-        e.leaf == VirtualElement::no_leaf ? *state.shape : field_.records->leaves()[e.leaf].parts();
+        e.level == 0 ? *state.shape : field_.records->leaves()[e.leaf].parts();
     data_->base->corners(static_cast<OpenTask&>(*task).base.get(), state.base, around.corners,
                          nullptr, nullptr, &faces);
     if (e.level == 0) return faces;

@@ -13,53 +13,14 @@
 //   - no criterion stops at a virtual node.
 // Consequence: a virtual element ends only where every deeper node on its faces hangs, seen from
 // any side, so that drawings are closed as at other hanging nodes.
+// A leaf that a drawing does not look at (VirtualOptions::values) is not divided: nothing of the
+// level sets drawn passes through it, whatever is projected around.
 #pragma once
 
-#include <mutex>
-#include <optional>
-
 #include <high_order/element_nets.hpp>
-#include <high_order/lens_sizes.hpp>
-#include <high_order/real_nodes.hpp>
-#include <nestgrid/algorithms/high_order.hpp>
-#include <walk/position_functions.hpp>
+#include <high_order/high_order_data.hpp>
 
 namespace nestgrid::engine {
-
-/// The polynomials of the leaves, and the nodes that the hierarchy itself makes.
-struct LeafPolynomials {
-    LeafRecords records;
-    RealNodes nodes;
-
-    LeafPolynomials(const LeafFunction& function, const BaseWalk& walk, std::uint64_t epoch)
-        : records{function, walk}, nodes{epoch, walk, records} {
-        records.finish();
-    }
-    std::size_t memory_bytes() const { return records.memory_bytes() + nodes.memory_bytes(); }
-};
-
-/// What is made once per solution.
-struct HighOrderData {
-    std::optional<WidenedHierarchy<float>> widened;  // where the values are float
-    const Hierarchy<double>* base;
-    BaseWalk walk;
-    LeafPolynomials field;
-    std::optional<LeafPolynomials> places;  // where a leaf is curved
-
-    explicit HighOrderData(const Hierarchy<float>& single);
-    explicit HighOrderData(const Hierarchy<double>& base);
-
-    /// The tolerance of positions beside one of the data that asks for none.
-    double default_position_tolerance(double tolerance) const;
-    /// Made when a lens first asks for them.
-    const LeafCorners& corners() const;
-
-private:
-    void look_at_places();
-
-    mutable std::once_flag corners_made_;
-    mutable std::optional<LeafCorners> corners_;
-};
 
 class VirtualElements {
 public:
@@ -83,18 +44,20 @@ public:
 private:
     /// Polynomials with the tolerance that they are drawn within.
     struct Drawn {
-        const LeafRecords* records = nullptr;
+        const LeafSummary* summary = nullptr;
         const RealNodes* nodes = nullptr;
+        const LeafRecords* records = nullptr;
         double tolerance = 0;
         double flat = 0;      // beta of what is flat
         double rounding = 0;  // added to bounds
 
-        Drawn(const LeafPolynomials& of, double within)
-            : records{&of.records},
+        Drawn(const PolynomialFacts& of, const LeafRecords& leaves, double within)
+            : summary{&of.summary},
               nodes{&of.nodes},
+              records{&leaves},
               tolerance{within},
               flat{within / flat_share},
-              rounding{1e-14 * of.records.magnitude()} {}
+              rounding{of.summary.rounding()} {}
         /// Whether elements may stop at a node of the hierarchy.
         bool stops(NodeKey key) const {
             const RealNode* const node = nodes->find(key);
@@ -142,8 +105,8 @@ private:
     using Positions = std::array<Point, max_split_nodes>;
     struct Places;
 
-    static std::optional<Drawn> places_within(const HighOrderData& data,
-                                              const VirtualOptions& options);
+    std::optional<Drawn> places_within(const VirtualOptions& options) const;
+    static bool is_linear(const HighOrderData& data);
     Point position(NodeKey key) const;
     Positions positions(Task* task, const VirtualElement& e, NodeMask which) const;
     void put_places(OpenTask& task, const VirtualElement& e, NodeMask which, Positions& x) const;
@@ -174,11 +137,12 @@ private:
                      double* out) const;
 
     std::shared_ptr<const HighOrderData> data_;
+    bool linear_;  // every leaf is the interpolant of its corners, and fits its neighbours
+    std::shared_ptr<const GatheredLeaves> leaves_;
     Drawn field_;
     std::optional<Drawn> places_;  // where leaves are curved
     std::size_t components_;
     int depth_;
-    bool linear_;  // every leaf is the interpolant of its corners, and fits its neighbours
     std::shared_ptr<const LensSizes> lens_;  // or null
     Stops criterion_;
 };

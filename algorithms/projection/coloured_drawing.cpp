@@ -163,6 +163,12 @@ Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
     });
 }
 
+/// What is drawn of polynomials: beside a slice, everything.
+engine::DrawnValues values_of(const SliceRequest& request, const IsosurfaceOptions& options) {
+    if (!request.functions.empty()) return std::nullopt;
+    return engine::values_at(request.isovalues, options.cap);
+}
+
 }  // namespace
 
 Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
@@ -207,7 +213,8 @@ std::vector<Slice> detail::draw_slices(const Prerolls& prerolls, const SliceRequ
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
             return engine::slices(hierarchy, request, targets, criterion, bounds, options,
                                   work.executor);
-        });
+        },
+        values_of(request, options));
 }
 
 std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const SliceRequest& request,
@@ -220,7 +227,8 @@ std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const Sli
             [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
                 return engine::count_triangles(hierarchy, request, criterion, bounds, most, options,
                                                work.executor);
-            });
+            },
+            values_of(request, options));
     } catch (const engine::Cancelled&) {
         return std::nullopt;
     }

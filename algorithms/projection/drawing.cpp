@@ -142,17 +142,19 @@ engine::CountWithin counting(std::span<const double> isovalues, const Isosurface
 
 /// Draws level sets of one walk, perhaps within a number of triangles (segments) of all together.
 /// \param dimension of the grid
+/// \param values of polynomials that are drawn
 /// \param draw draw(hierarchy, criterion, bounds)
 template <class Result, int dimension, class Draw>
 Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double> isovalues,
-                                const Projection& projection, const IsosurfaceOptions& options,
-                                const Work& work, const Draw& draw) {
+                                const engine::DrawnValues& values, const Projection& projection,
+                                const IsosurfaceOptions& options, const Work& work,
+                                const Draw& draw) {
     const auto within = [&](const VirtualRefinement& fine) {
         return draw(fine, fine.criterion(), fine.bounds());
     };
     const auto count = counting<dimension>(isovalues, options, work);
-    if (auto drawn =
-            engine::within_error<Result>(prerolls, projection, work, dimension, within, count)) {
+    if (auto drawn = engine::within_error<Result>(prerolls, projection, work, dimension, within,
+                                                  count, values)) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
@@ -196,19 +198,21 @@ Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double iso
     engine::check_first(prerolls, projection, work, "isosurfaces",
                         [&] { check_isosurface(projection, options, dimension); });
     const std::span<const double> isovalues(&isovalue, 1);
+    const engine::DrawnValues values = engine::values_at(isovalues, options.cap);
     const auto once = [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
         return engine::isosurface<dimension>(hierarchy, isovalue, criterion, bounds, options,
                                              work.executor);
     };
     if constexpr (dimension == 2) {
-        return draw_together<Isosurface<2>, 2>(prerolls, isovalues, projection, options, work,
-                                               once);
+        return draw_together<Isosurface<2>, 2>(prerolls, isovalues, values, projection, options,
+                                               work, once);
     } else {
         const auto within = [&](const VirtualRefinement& fine) {
             return once(fine, fine.criterion(), fine.bounds());
         };
-        if (auto drawn = engine::within_error<Isosurface<3>>(
-                prerolls, projection, work, 3, within, counting<3>(isovalues, options, work))) {
+        if (auto drawn = engine::within_error<Isosurface<3>>(prerolls, projection, work, 3, within,
+                                                             counting<3>(isovalues, options, work),
+                                                             values)) {
             return *std::move(drawn);
         }
         return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
@@ -237,7 +241,8 @@ std::vector<Isosurface<dimension>> detail::draw_isosurfaces(
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
             return engine::isosurfaces<dimension>(hierarchy, isovalues, targets, criterion, bounds,
                                                   options, work.executor);
-        });
+        },
+        engine::values_at(isovalues, options.cap));
 }
 template std::vector<Isosurface<2>> detail::draw_isosurfaces(const Prerolls&,
                                                              std::span<const double>,
@@ -258,8 +263,10 @@ Projected<Isosurface<dimension>> isoband(const Prerolls& prerolls, double low, d
         engine::refuse_all_but_budgets(projection, "bands");
         engine::require_band(low, high, options);
     });
+    const std::array isovalues{low, high};
+    const engine::DrawnValues values(std::in_place, 1, isovalues);
     return draw_together<Isosurface<dimension>, dimension>(
-        prerolls, std::array{low, high}, projection, options, work,
+        prerolls, isovalues, values, projection, options, work,
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
             return engine::isoband<dimension>(hierarchy, low, high, criterion, bounds, options,
                                               work.executor);
@@ -276,7 +283,7 @@ Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> v
     engine::check_first(prerolls, projection, work, "isolines",
                         [&] { engine::refuse_all_but_budgets(projection, "isolines"); });
     return draw_together<Isolines, 2>(
-        prerolls, values, projection, options, work,
+        prerolls, values, engine::values_at(values, false), projection, options, work,
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
             return engine::isolines(hierarchy, values, criterion, bounds, options, work.executor);
         });

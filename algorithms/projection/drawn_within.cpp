@@ -75,22 +75,32 @@ std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
 
 double range_of(const HighOrder& data) {
     // Bounds are the same at any tolerance.
-    const VirtualRefinement coarsest(data, {.tolerance = std::numeric_limits<double>::max()});
+    const VirtualRefinement coarsest = polynomials_at(
+        data, {}, std::numeric_limits<double>::infinity(), DrawnValues(std::in_place));
     return coarsest.bounds().greatest() - coarsest.bounds().least();
 }
 
+DrawnValues values_at(std::span<const double> isovalues, bool cap) {
+    DrawnValues values(std::in_place);
+    for (const double isovalue : isovalues) {
+        values->push_back({isovalue, cap ? std::numeric_limits<double>::infinity() : isovalue});
+    }
+    return values;
+}
+
 VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
-                                 double tolerance) {
+                                 double tolerance, const DrawnValues& values) {
     return {data,
             {.tolerance = std::min(tolerance, std::numeric_limits<double>::max()),
              .lens = projection.lens,
-             .position_tolerance = projection.position_error}};
+             .position_tolerance = projection.position_error,
+             .values = values}};
 }
 
 TriangleBudget find_tolerance(const HighOrder& data, const Projection& projection,
-                              const CountWithin& count) {
+                              const CountWithin& count, const DrawnValues& values) {
     const auto at = [&](double tolerance, std::uint64_t most) {
-        return count(polynomials_at(data, projection, tolerance), most);
+        return count(polynomials_at(data, projection, tolerance, values), most);
     };
     return least_threshold(at, range_of(data), projection.max_triangles,
                            data.least_tolerance(projection.position_error));

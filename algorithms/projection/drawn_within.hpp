@@ -4,10 +4,12 @@
 // What all drawings under a projection have in common (drawing.hpp).
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <type_traits>
+#include <vector>
 
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
@@ -47,10 +49,14 @@ Projection told(Projection projection);
 std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
                                                  const Projection& projection, const Work& work);
 
+/// The level sets of polynomials that are drawn (VirtualOptions::values); nothing: all leaves are.
+using DrawnValues = std::optional<std::vector<std::array<double, 2>>>;
+/// Those of isovalues. \param cap whether what is inside them is drawn on the boundary, too
+DrawnValues values_at(std::span<const double> isovalues, bool cap);
 /// The polynomials within a tolerance, of which infinity is one, and as finely as the lens of the
 /// projection asks.
 VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
-                                 double tolerance);
+                                 double tolerance, const DrawnValues& values = {});
 
 /// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
 template <class Function>
@@ -66,10 +72,10 @@ auto with_field(const Prerolls& prerolls, const Work& work, int dimension,
 /// \param ask called with the VirtualRefinement
 template <class Ask>
 auto from_polynomials(const Prerolls& prerolls, const Projection& projection, const Work& work,
-                      const Ask& ask) {
+                      const Ask& ask, const DrawnValues& values = {}) {
     std::optional<std::invoke_result_t<const Ask&, const VirtualRefinement&>> result;
     if (const auto data = polynomials_for(prerolls, projection, work)) {
-        result = ask(polynomials_at(*data, projection, projection.least_threshold()));
+        result = ask(polynomials_at(*data, projection, projection.least_threshold(), values));
     }
     return result;
 }
@@ -90,7 +96,7 @@ using CountWithin =
     std::function<std::optional<std::uint64_t>(const VirtualRefinement&, std::uint64_t most)>;
 /// The least tolerance at which a drawing of polynomials keeps within a number of triangles.
 TriangleBudget find_tolerance(const HighOrder& data, const Projection& projection,
-                              const CountWithin& count);
+                              const CountWithin& count, const DrawnValues& values = {});
 
 /// Draws a field of higher degree, if it has the dimension: within the error that the projection
 /// asks for, or the least one with its number of triangles. Nothing where it asks for neither, or
@@ -99,30 +105,33 @@ template <class Result, class Draw>
 std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
                                               const Projection& projection, const Work& work,
                                               int dimension, const Draw& draw,
-                                              const CountWithin& count) {
+                                              const CountWithin& count,
+                                              const DrawnValues& values = {}) {
     const auto data = polynomials_for(prerolls, projection, work);
     if (data == nullptr) return std::nullopt;
     work.on(prerolls.field()).facts().require_dimension(dimension);
-    const TriangleBudget search =
-        threshold_of(projection, work, [&] { return find_tolerance(*data, projection, count); });
+    const TriangleBudget search = threshold_of(
+        projection, work, [&] { return find_tolerance(*data, projection, count, values); });
     work.begin("drawing");
-    return Projected<Result>{draw(polynomials_at(*data, projection, search.threshold)), search};
+    return Projected<Result>{draw(polynomials_at(*data, projection, search.threshold, values)),
+                             search};
 }
 
 /// Calls draw(hierarchy, criterion, bounds) once, with a field of the dimension under the
 /// projection.
 ///
 /// \param isovalues of the level sets that are drawn
+/// \param values of polynomials that are drawn
 template <class Draw>
 auto draw_once(const Prerolls& prerolls, const Projection& projection,
-               std::span<const double> isovalues, const Work& work, int dimension,
-               const Draw& draw) {
+               std::span<const double> isovalues, const Work& work, int dimension, const Draw& draw,
+               const DrawnValues& values = {}) {
     const auto within = [&](const VirtualRefinement& fine) {
         work.on(prerolls.field()).facts().require_dimension(dimension);
         work.begin("drawing");
         return draw(fine, fine.criterion(), fine.bounds());
     };
-    if (auto drawn = from_polynomials(prerolls, projection, work, within)) {
+    if (auto drawn = from_polynomials(prerolls, projection, work, within, values)) {
         return *std::move(drawn);
     }
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {

@@ -4,6 +4,8 @@
 // The surface of one level while it is drawn.
 #pragma once
 
+#include <deque>
+
 #include <surfaces/node_gradients.hpp>
 #include <surfaces/subtree_vertices.hpp>
 #include <surfaces/surface_builder.hpp>

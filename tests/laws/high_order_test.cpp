@@ -241,14 +241,6 @@ TEST(HighOrder, DegreeOneIsTheHierarchyItself) {
     }
 }
 
-TEST(HighOrder, AsksTheFieldOnceForEachLeaf) {
-    const Drawn<3> drawn(WorldOptions{.levels = 3, .least_degree = 2, .greatest_degree = 4},
-                         gyroid);
-    EXPECT_EQ(drawn.field.evaluated, drawn.world.leaf_count());
-    (void)drawn.surface(0.1, {0.01, 4});
-    EXPECT_EQ(drawn.field.evaluated, drawn.world.leaf_count());
-}
-
 TEST(HighOrder, WorldsAreSound) {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         const Drawn<3> drawn(

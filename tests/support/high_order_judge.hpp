@@ -45,8 +45,15 @@ struct DrawnWorld {
     template <class... Arguments>
     explicit DrawnWorld(Arguments&&... arguments) : world{std::forward<Arguments>(arguments)...} {}
 
-    Isosurface<dim> surface(double isovalue, const VirtualOptions& at,
+    /// Drawn as front ends do: leaves that the level set does not pass through are left out.
+    Isosurface<dim> surface(double isovalue, VirtualOptions at,
                             const IsosurfaceOptions& options = {}) const {
+        const double greatest = options.cap ? std::numeric_limits<double>::infinity() : isovalue;
+        at.values.emplace({std::array{isovalue, greatest}});
+        return surface_of_all(isovalue, at, options);
+    }
+    Isosurface<dim> surface_of_all(double isovalue, const VirtualOptions& at,
+                                   const IsosurfaceOptions& options = {}) const {
         const VirtualRefinement fine(data, at);
         return isosurface<dim>(fine, isovalue, under(fine.criterion(), fine.bounds()), options);
     }

@@ -3,6 +3,7 @@
 #include "frame_drawing.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <nestgrid/algorithms/collapse.hpp>
 #include <nestgrid/algorithms/slices.hpp>
@@ -34,10 +35,15 @@ auto FrameDrawing::with(double threshold, const Function& function) const {
     }
     const HighOrder& data = *criteria_.polynomials;
     const double positions = request_.position_error;
-    const VirtualRefinement fine(data,
-                                 {.tolerance = std::max(threshold, data.least_tolerance(positions)),
-                                  .lens = request_.lens,
-                                  .position_tolerance = positions});
+    VirtualOptions options{.tolerance = std::max(threshold, data.least_tolerance(positions)),
+                           .lens = request_.lens,
+                           .position_tolerance = positions};
+    const std::optional<double>& isovalue = request_.isovalue;
+    if (isovalue && !plane_ && !request_.collapses()) {
+        const double greatest = request_.cap ? std::numeric_limits<double>::infinity() : *isovalue;
+        options.values.emplace({std::array{*isovalue, greatest}});
+    }
+    const VirtualRefinement fine(data, options);
     const Hierarchy<double>& hierarchy = fine;
     return function(hierarchy, StoppedBy{fine.criterion(), fine.bounds()});
 }

@@ -20,10 +20,13 @@ class PolynomialPoints;
 class VirtualElements;
 }  // namespace engine
 
-/// The polynomials of all leaves, with records of the edges and faces that they share.
+/// What all drawings of a solution need: 12 bytes a leaf, and its nodes. The polynomials, with
+/// records of the edges and faces that leaves share, are those of a drawing
+/// (VirtualOptions::values) and are kept until the next one needs others.
 class HighOrder {
 public:
-    /// Borrows the hierarchy, or grid and field. Asks the field once for each leaf.
+    /// Borrows the hierarchy, or grid and field, which stay as they are. Asks the field once for
+    /// each leaf, and in a drawing at most once for each that it looks at.
     /// \throw InvalidInput for other grids and fields, GridError for a wrong degree or value
     explicit HighOrder(const Hierarchy<float>& base);
     explicit HighOrder(const Hierarchy<double>& base);
@@ -44,6 +47,7 @@ public:
     /// \param position_tolerance that of VirtualOptions: where it is not 0, positions are within it
     ///        at any tolerance, and do not count
     double least_tolerance(double position_tolerance = 0) const;
+    /// Of what all drawings need, and of the polynomials that were gathered last.
     std::size_t memory_bytes() const;
 
 private:
@@ -68,6 +72,11 @@ struct VirtualOptions {
     /// How far points of curved leaves may be from where they are drawn, in units of length; 0: the
     /// same share of the diameter of the domain as the tolerance is of the range of the data.
     double position_tolerance = 0;
+    /// Level sets of component 0 that are drawn, each from a least to a greatest value: leaves that
+    /// none passes through are not looked at. What is drawn in them all the same counts as met by
+    /// the depth limit, with an error of the whole range. A cap takes all values from its isovalue
+    /// on. Default: everything is drawn.
+    std::optional<std::vector<std::array<double, 2>>> values{};
 };
 
 /// Leaves halved until what is drawn is within the tolerance, or at the depth limit

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: the nestgrid authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What HighOrder keeps of a solution, and what a drawing gathers of it: the polynomials and records
+// of the leaves that it looks at. The last one gathered is kept for the next drawing.
+#pragma once
+
+#include <mutex>
+#include <optional>
+
+#include <high_order/lens_sizes.hpp>
+#include <high_order/real_nodes.hpp>
+#include <nestgrid/algorithms/high_order.hpp>
+#include <walk/position_functions.hpp>
+
+namespace nestgrid::engine {
+
+/// A few numbers of each leaf, and the nodes that the hierarchy itself makes.
+struct PolynomialFacts {
+    LeafSummary summary;
+    RealNodes nodes;
+
+    PolynomialFacts(const LeafFunction& function, const BaseWalk& walk, std::uint64_t epoch)
+        : summary{function}, nodes{epoch, function, walk, summary} {}
+    std::size_t memory_bytes() const { return summary.memory_bytes() + nodes.memory_bytes(); }
+};
+
+/// The polynomials and records of some leaves.
+struct GatheredLeaves {
+    LeafChoice choice;
+    LeafRecords field;
+    std::optional<LeafRecords> places;  // where a leaf is curved
+
+    std::size_t memory_bytes() const {
+        return choice.memory_bytes() + field.memory_bytes() + (places ? places->memory_bytes() : 0);
+    }
+};
+
+/// What is made once per solution.
+struct HighOrderData {
+    using DrawnValues = std::optional<std::vector<std::array<double, 2>>>;
+
+    std::optional<WidenedHierarchy<float>> widened;  // where the values are float
+    const Hierarchy<double>* base;
+    BaseWalk walk;
+    std::uint64_t epoch;
+    PolynomialFacts field;
+    std::optional<PolynomialFacts> places;  // where a leaf is curved
+
+    explicit HighOrderData(const Hierarchy<float>& single);
+    explicit HighOrderData(const Hierarchy<double>& base);
+
+    /// The tolerance of positions beside one of the data that asks for none.
+    double default_position_tolerance(double tolerance) const;
+    /// The leaves that VirtualOptions::values asks for.
+    /// \throw GridError where the hierarchy has changed, or as HighOrder
+    std::shared_ptr<const GatheredLeaves> gathered(const DrawnValues& values) const;
+    /// The same, of leaves that are chosen, and not kept for others.
+    GatheredLeaves gather(const LeafChoice::Chooses& chooses,
+                          LeafChoice::Needs needs = LeafChoice::Needs::records) const;
+    /// Made when a lens first asks for them.
+    const LeafCorners& corners() const;
+    std::size_t memory_bytes() const;
+
+private:
+    void look_at_places();
+    GatheredLeaves gather_none() const;
+
+    mutable std::once_flag corners_made_;
+    mutable std::optional<LeafCorners> corners_;
+    mutable std::mutex gathering_;
+    mutable DrawnValues last_values_;
+    mutable std::shared_ptr<const GatheredLeaves> last_;
+};
+
+}  // namespace nestgrid::engine
