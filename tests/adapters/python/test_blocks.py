@@ -4,6 +4,7 @@
 import math
 import os
 import pickle
+import re
 import sys
 from collections import Counter
 
@@ -418,6 +419,39 @@ def test_trees_of_all_kinds(amr_files, name):
     np.testing.assert_array_equal(
         pickle.loads(pickle.dumps(field)).isosurface(0).vertices, field.isosurface(0).vertices
     )
+
+
+@pytest.mark.parametrize("version, mode", [(1, "Ascii"), (1, "Appended"), (2, "Ascii"), (2, "Binary")])
+def test_arrays_of_several_numbers_in_trees(amr_files, version, mode):
+    """They have all their numbers, however a file has them, and are refused without a part."""
+    vtk_xml = pytest.importorskip("vtkmodules.vtkIOXML")
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+    reader = vtk_xml.vtkXMLHyperTreeGridReader()
+    reader.SetFileName(str(amr_files / "plane_thirds.htg"))
+    reader.Update()
+    grid = reader.GetOutputDataObject(0)
+    cells = grid.GetCellData()
+    plac = vtk_to_numpy(cells.GetArray("plac"))
+    both = numpy_to_vtk(np.stack([plac, 2 * plac, 3 * plac], axis=1), deep=True)
+    both.SetName("b: 3 %")
+    cells.AddArray(both)
+    path = amr_files / f"{mode}_{version}.htg"
+    writer = vtk_xml.vtkXMLHyperTreeGridWriter()
+    writer.SetDataSetMajorVersion(version)
+    getattr(writer, f"SetDataModeTo{mode}")()
+    writer.SetFileName(str(path))
+    writer.SetInputDataObject(grid)
+    assert writer.Write()
+    points = np.random.default_rng(1).uniform(0, 1, (50, 2))
+    for c in range(3):
+        field = nestgrid.load(path, "b: 3 %", component=c)
+        np.testing.assert_allclose(field.probe(points), (c + 1) * points[:, 0], atol=1e-12)
+    if (version, mode) == (2, "Ascii"):
+        path.write_bytes(re.sub(rb"[-0-9. ]+\n( *<InformationKey)", rb"\1", path.read_bytes()))
+        assert nestgrid.load(path, "plac").probe([[0.5, 0.5]]) == pytest.approx(0.5)
+        with pytest.raises(nestgrid.IoError, match="fewer numbers than the trees have cells"):
+            nestgrid.load(path, "b: 3 %", component=1)
 
 
 @pytest.mark.parametrize("name", ["trees.htg", "thirds.htg", "uneven.htg"])

@@ -8,6 +8,7 @@
 
 #include <vtkCellData.h>
 #include <vtkNew.h>
+#include <vtkXMLDataElement.h>
 #include <vtkXMLHyperTreeGridReader.h>
 
 #include "input/blocks/read_blocks.hpp"
@@ -21,6 +22,38 @@ namespace {
 
 using nestgrid::InvalidInput;
 namespace fs = std::filesystem;
+
+/// VTK's reader, with all numbers of arrays that have several for each cell. Where an array is in
+/// one piece, in files of version 2, VTK asks for it tree by tree, and 9.1 for as many numbers as
+/// there are cells: here the first tree gets all of it.
+class TreeReader : public vtkXMLHyperTreeGridReader {
+public:
+    vtkTypeMacro(TreeReader, vtkXMLHyperTreeGridReader) static TreeReader* New() {
+        VTK_STANDARD_NEW_BODY(TreeReader);
+    }
+
+    /// Takes all numbers of arrays away that a file has in part: what VTK leaves unset is no value.
+    void clear_short_arrays() const {
+        for (vtkAbstractArray* const each : short_) each->SetNumberOfTuples(0);
+    }
+
+protected:
+    int ReadArrayValues(vtkXMLDataElement* element, vtkIdType to, vtkAbstractArray* array,
+                        vtkIdType from, vtkIdType count, FieldType type) override {
+        const bool is_cells = element->GetParent()->GetName() == std::string_view("CellData");
+        const bool is_whole = is_cells && type == OTHER;
+        if (is_whole && from > 0) return 1;
+        if (is_whole) count = array->GetNumberOfValues();
+        const int is_read =
+            vtkXMLHyperTreeGridReader::ReadArrayValues(element, to, array, from, count, type);
+        if (!is_cells || is_read != 0) return is_read;
+        short_.push_back(array);
+        return 1;
+    }
+
+private:
+    std::vector<vtkSmartPointer<vtkAbstractArray>> short_;
+};
 
 template <class Real>
 BoxNumbers numbers_of(const TreeBoxes& trees, vtkDataArray& data, int component) {
@@ -113,12 +146,13 @@ const RegisteredFormat htg({.name = "VTK hyper tree grid",
 vtkSmartPointer<vtkHyperTreeGrid> read_htg(const fs::path& path) {
     check_xml_end(path);
     return read_quietly<vtkHyperTreeGrid>([&] {
-        const vtkNew<vtkXMLHyperTreeGridReader> reader;
+        const vtkNew<TreeReader> reader;
         if (reader->CanReadFile(path.c_str()) == 0) {
             throw InvalidInput("it is no file of VTK's hyper tree grids");
         }
         reader->SetFileName(path.c_str());
         reader->Update();
+        reader->clear_short_arrays();
         return vtkSmartPointer<vtkDataObject>(reader->GetOutputDataObject(0));
     });
 }
