@@ -72,8 +72,8 @@ def values(block: Block, f: Function, blocks: list[Block]) -> np.ndarray:
 Fields = dict[str, Function]
 
 
-def write_vthb(path: str, dim: int, fields: Fields, across: int = 2) -> None:
-    """The boxes of a plane lie across an axis."""
+def write_vthb(path: str, dim: int, fields: Fields, across: int = 2, place: float = 0) -> None:
+    """The boxes of a plane lie across an axis, at a place of it."""
     blocks = blocks_of(dim)
 
     def placed(numbers: list[Any], flat: Any) -> list[Any]:
@@ -84,7 +84,8 @@ def write_vthb(path: str, dim: int, fields: Fields, across: int = 2) -> None:
     amr = vtk.vtkOverlappingAMR()
     amr.Initialize(3, [len(level) for level in levels])
     amr.SetGridDescription(vtk.VTK_XYZ_GRID if dim == 3 else planes[across])
-    amr.SetOrigin([0, 0, 0])
+    origin = np.array(placed([0.0] * dim, place))
+    amr.SetOrigin(origin)
     for number, level in enumerate(levels):
         step = 0.5 / N / 2**number
         amr.SetSpacing(number, [step] * 3)
@@ -93,7 +94,7 @@ def write_vthb(path: str, dim: int, fields: Fields, across: int = 2) -> None:
             high = placed([N * a + N - 1 for a in block[1]], -1)
             amr.SetAMRBox(number, i, vtk.vtkAMRBox(low, high))
             grid = vtk.vtkUniformGrid()
-            grid.SetOrigin([step * a for a in low])
+            grid.SetOrigin(origin + step * np.array(low))
             grid.SetSpacing([step] * 3)
             grid.SetDimensions(placed([N + 1] * dim, 1))
             vector = []
@@ -399,8 +400,6 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     fields = {"dist": ball(0.45 + 0.1 * time), "plac": place}
     path = lambda name: os.path.join(folder, prefix + name)  # noqa: E731
     write_vthb(path("amr.vthb"), dim, fields)
-    if dim == 2:
-        write_vthb(path("across_x.vthb"), dim, fields, across=0)
     write_htg(path("trees.htg"), dim, fields)
     write_flash(path("run_hdf5_plt_cnt_0000"), dim, fields, time)
     write_flash(path("round_hdf5_plt_cnt_0000"), dim, fields, time, "cylindrical")
@@ -412,6 +411,7 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     write_trees(path("thirds.htg"), even, 3, fields, near)
     write_trees(path("uneven.htg"), uneven, 2, fields, near)
     for axis, name in enumerate("xyz" if dim == 2 else ""):
+        write_vthb(path(f"across_{name}.vthb"), dim, fields, axis, 0.3)
         for factor in (2, 3):
             write_trees(path(f"across_{name}_{factor}.htg"), even, factor, fields, near, axis, 0.3)
     write_trees(path("backwards.htg"), [even[0][::-1], *even[1:]], 2, fields, near)

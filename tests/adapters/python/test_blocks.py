@@ -369,13 +369,14 @@ def test_balls_beside_vtk(tmp_path, rule):
         assert ours < (0.8 if rule == "means" else 1.1) * theirs, (what, ours, theirs)
 
 
-@pytest.mark.parametrize("factor", [2, 3])
-def test_trees_in_planes_across_axes(amr_files, factor):
-    """They lie where they are in space, and have the lines of the plane across z."""
+@pytest.mark.parametrize("kind", ["_2.htg", "_3.htg", ".vthb"])
+def test_planes_across_axes(amr_files, kind):
+    """Trees and boxes lie where they are in space, and have the lines of the plane across z."""
     lengths = []
     for axis, name in enumerate("xyz"):
-        field = nestgrid.load(amr_files / f"plane_across_{name}_{factor}.htg", "dist")
+        field = nestgrid.load(amr_files / f"plane_across_{name}{kind}", "dist")
         assert field.dimension == 2
+        field = pickle.loads(pickle.dumps(field))
         lines = field.isolines(0, 0)
         assert (lines.vertices[:, axis] == 0.3).all()
         lengths.append(sum(np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines))
@@ -596,8 +597,8 @@ def test_refusals_of_formats_of_codes(amr_files):
     np.testing.assert_allclose(second.range, [0, 1], atol=1e-12)
     with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
         load(amr_files / "chombo.hdf5", "dist", component=0)
-    with pytest.raises(nestgrid.IoError, match="does not lie in space, or in a plane of constant z"):
-        load(amr_files / "plane_across_x.vthb", "dist")
+    with pytest.raises(nestgrid.InvalidInput, match="across_y.vthb' has another grid than"):
+        load([amr_files / "plane_across_x.vthb", amr_files / "plane_across_y.vthb"], "dist")
     with pytest.raises(nestgrid.IoError, match="has cylindrical coordinates, not cartesian ones"):
         load(amr_files / "round_hdf5_plt_cnt_0000", "dist")
     (amr_files / "cut.athdf").write_bytes((amr_files / "athena.athdf").read_bytes()[:-9000])
