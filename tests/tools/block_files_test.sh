@@ -174,6 +174,29 @@ refused 1 "'amr.vthb' is no file of the format of the first one" \
 refused 1 "round_hdf5_plt_cnt_0000': it has cylindrical coordinates, not cartesian ones" info round_hdf5_plt_cnt_0000
 refused 1 "'plane_across_y.vthb' has another grid than the first input" \
     isolines plane_across_x.vthb plane_across_y.vthb --field dist --values 0 --time 0.5 -o l.vtp
+# As others write these files: PLUTO says where cells are, texts have their lengths beside them,
+# levels may be empty.
+edited() { cp "$1" "$2" && /usr/bin/python3 -c 'import sys, h5py, numpy as np
+with h5py.File(sys.argv[1], "a") as file:
+    levels = [file[f"level_{i}"] for i in range(3)] if "level_0" in file else []
+    exec(sys.argv[2])' "$2" "$3"; }
+pluto='for level in levels: level.attrs.update(domBeg1=-1.0, domBeg2=3.0, domBeg3=0.5, g_x2stretch=2.0, g_x3stretch=1.0, geometry=1, logr=0)'
+edited chombo.hdf5 pluto.hdf5 "$pluto"
+run info pluto.hdf5
+grep -qE '^origin +-1 3 0.5$' out && grep -qE '^spacing +0.0625 0.125 0.0625$' out || fail "PLUTO: $(cat out)"
+edited pluto.hdf5 round.hdf5 'levels[0].attrs["geometry"] = 4'
+refused 1 "'round.hdf5': its coordinates are curved, not cartesian" info round.hdf5
+edited pluto.hdf5 logarithmic.hdf5 'levels[0].attrs["logr"] = 1'
+refused 1 "'logarithmic.hdf5': its cells are not of one size: they grow with the radius" info logarithmic.hdf5
+edited chombo.hdf5 empty.hdf5 'file.attrs["num_levels"] = np.int32(4)
+file["level_3/boxes"] = np.zeros(0, levels[0]["boxes"].dtype)
+for i, name in enumerate(["of any length", "dist"]): file.attrs[f"component_{i}"] = name'
+run isosurface empty.hdf5 --field "of any length" --value 0 --threshold 0
+[ "$(value area)" = "$(head -1 all_areas)" ] || fail "an empty level and a long name: $(cat out)"
+edited athena.athdf thin.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 8], ">i4")'
+refused 1 "'thin.athdf': its blocks are one cell thick along x or y: of slices, those across z are read" info thin.athdf
+edited athena.athdf line.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 1], ">i4")'
+refused 1 "'line.athdf': it has 1 dimension, not 2 or 3" info line.athdf
 mv amr/amr_3.vti amr/gone.vti
 refused 1 "^nestgrid: 'amr.vthb': " info amr.vthb
 truncate -s 300000 athena.athdf

@@ -56,13 +56,18 @@ class Blocks(Field):
     name     of the data, for files and tables
     unit     of length, such as "mm"
 
-    Leaves with the value nan are not drawn. Raises InvalidInput where boxes overlap, are not
-    aligned to the ratio or do not lie in the level before.
+    Leaves with the value nan, or masked ones, are not drawn. Raises InvalidInput where boxes
+    overlap, are not aligned to the ratio or do not lie in the level before.
     """
 
     __module__ = "nestgrid"
 
-    @takes(boxes=sequence(_box, "a sequence of boxes"), ratio=_ratio, rule=name_of(Rule), axes=optional(sequence(whole(0, 2), "axes from 0 to 2")))
+    @takes(
+        boxes=sequence(_box, "a sequence of boxes"),
+        ratio=_ratio,
+        axes=optional(sequence(whole(0, 2), "axes from 0 to 2")),
+        rule=name_of(Rule),
+    )
     def __init__(
         self,
         boxes: Sequence[Box],
@@ -99,8 +104,14 @@ class Blocks(Field):
             raise InvalidInput(f"Blocks(): axes are {along}, not {dimension} that ascend")
         single = all(array.dtype == np.float32 for _, _, array in boxes)
         kind = np.float32 if single else np.float64
+        arrays = [np.asarray(array, kind) for _, _, array in boxes]
+        if all(np.isnan(array).all() for array in arrays):
+            raise InvalidInput("Blocks(): no cell has a value")
         self._built_of = (
-            [(level, lower, np.asarray(array, kind)) for level, lower, array in boxes],
+            [
+                (level, lower, array.copy() if 0 in array.strides else array)  # as broadcast ones
+                for (level, lower, _), array in zip(boxes, arrays)
+            ],
             ratios,
             step,
             start,
@@ -128,8 +139,8 @@ class BlockFrames(Frames):
         """names are those of files, for sentences."""
         frames = cls.__new__(cls)
         built = [
-            (boxes, [1, *ratios], *place)
-            for boxes, ratios, *place in (each._built_of for each in blocks)
+            (boxes, [1, *ratios], step, start, along, rule)
+            for boxes, ratios, step, start, along, rule in (each._built_of for each in blocks)
         ]
         frames._frames = _nestgrid.block_frames(built, times, names)
         frames._blocks = blocks

@@ -91,6 +91,34 @@ def test_any_order_in_memory_and_types():
     assert whole.probe([[1, 1]])[0] == 1.5
 
 
+def test_masked_cells_have_no_number():
+    """As nan has none, in boxes and trees; a mask without an entry changes nothing."""
+    here = ball(*centres(0, (0, 0, 0), (8, 8, 8)))
+    hidden = here > 0.2
+    outside = [[0.95, 0.95, 0.95], [0.5, 0.5, 0.5]]
+    leaves = np.column_stack([*(np.indices((8, 8, 8)).reshape(3, -1)), np.full(512, 3)])
+    for array, finite in (
+        (np.ma.masked_array(here, hidden), [False, True]),
+        (np.ma.masked_array(here < 0, hidden), [False, True]),
+        (np.ma.masked_array(here, np.zeros_like(hidden)), [True, True]),
+    ):
+        boxes_field = nestgrid.Blocks([(0, (0, 0, 0), array)], spacing=[1 / N] * 3)
+        trees = nestgrid.Octree(leaves, array.ravel(), max_level=3, spacing=[1 / N] * 3)
+        for field in (boxes_field, trees):
+            assert np.isfinite(field.probe(outside)).ravel().tolist() == finite
+    with pytest.raises(nestgrid.InvalidInput, match=r"Blocks\(\): no cell has a value"):
+        nestgrid.Blocks([(0, (0, 0, 0), np.full((2, 2, 2), np.nan))])
+
+
+def test_numbers_that_lie_in_one_place():
+    """What NumPy repeats without a copy is as good as a copy."""
+    layer = np.arange(4.0)
+    repeated = nestgrid.Blocks([(0, (0, 0, 0), np.broadcast_to(layer, (4, 4, 4)))])
+    copied = nestgrid.Blocks([(0, (0, 0, 0), np.broadcast_to(layer, (4, 4, 4)).copy())])
+    np.testing.assert_array_equal(repeated.isosurface(1.7).vertices, copied.isosurface(1.7).vertices)
+    assert len(copied.isosurface(1.7).vertices) > 8
+
+
 def test_arrays_are_borrowed():
     given = boxes(ball)
     field = nestgrid.Blocks(given, spacing=[1 / N] * 3)
@@ -582,6 +610,66 @@ def test_formats_of_codes_in_the_plane(amr_files, name):
     field = nestgrid.load(amr_files / f"plane_{name}", "plac")
     points = np.random.default_rng(1).uniform(0, 1, (50, 2))
     np.testing.assert_allclose(field.probe(points), points[:, 0], atol=1e-12)
+
+
+def edited(amr_files, name, edit):
+    """A file of another name with changes."""
+    h5py = pytest.importorskip("h5py")
+    path = amr_files / f"edited_{name}"
+    path.write_bytes((amr_files / name).read_bytes())
+    with h5py.File(path, "a") as file:
+        edit(file)
+    return path
+
+
+def test_formats_of_codes_as_others_write_them(amr_files):
+    """PLUTO says where cells are; texts have their lengths beside them, vectors names; levels may
+    be empty."""
+
+    def pluto(file, **more):
+        for level in range(3):
+            place = {"domBeg1": -1.0, "domBeg2": 3.0, "domBeg3": 0.5, "g_x2stretch": 2.0, "geometry": 1}
+            file[f"level_{level}"].attrs.update(place | more)
+
+    def long_names(file):
+        file.attrs["num_levels"] = np.int32(4)
+        file["level_3/boxes"] = np.zeros(0, file["level_0/boxes"].dtype)
+        for i, name in enumerate(["of any length \u03c1", "dist"]):
+            file.attrs[f"component_{i}"] = name
+        for level in range(3):
+            step = tuple(file[f"level_{level}"].attrs["dx"] * np.array([1, 2, 1]))
+            file[f"level_{level}"].attrs["vec_dx"] = np.array(step, [(x, "f8") for x in "xyz"])
+
+    def athena_texts(file):
+        for each in ("DatasetNames", "VariableNames"):
+            file.attrs[each] = [name.decode() for name in file.attrs[each]]
+        file.attrs["Coordinates"] = "cartesian"
+
+    load = nestgrid.load
+    points = np.random.default_rng(1).uniform(0, 1, (50, 3))
+    here = points * [1, 2, 1]
+    expected = load(amr_files / "chombo.hdf5", "dist").probe(points)
+    field = load(edited(amr_files, "chombo.hdf5", pluto), "dist")
+    np.testing.assert_allclose(field.probe(here + [-1, 3, 0.5]), expected, atol=1e-12)
+    field = load(edited(amr_files, "chombo.hdf5", long_names), "of any length \u03c1")
+    np.testing.assert_allclose(field.probe(here), expected, atol=1e-12)
+    field = load(edited(amr_files, "athena.athdf", athena_texts), "dist")
+    np.testing.assert_allclose(field.probe(points), expected, atol=1e-12)
+
+    def refused(name, sentence, edit):
+        with pytest.raises(nestgrid.IoError, match=sentence):
+            load(edited(amr_files, name, edit), "dist")
+
+    curved = "curved or logarithmic coordinates, not cartesian"
+    refused("chombo.hdf5", curved, lambda file: pluto(file, geometry=4))
+    refused("chombo.hdf5", curved, lambda file: pluto(file, logr=1))
+    dimension = lambda file: file["Chombo_global"].attrs.update(SpaceDim=1)  # noqa: E731
+    refused("chombo.hdf5", "has 1 dimensions, not 2 or 3", dimension)
+    size = lambda *n: lambda file: file.attrs.update(MeshBlockSize=np.array(n))  # noqa: E731
+    refused("athena.athdf", "one cell thick along x or y", size(8, 1, 8))
+    refused("athena.athdf", "has 1 dimension, not 2 or 3", size(8, 1, 1))
+    names = lambda file: file.attrs.update(VariableNames=np.array([b"dist"]))  # noqa: E731
+    refused("athena.athdf", "a variable has no name", names)
 
 
 def test_refusals_of_formats_of_codes(amr_files):
