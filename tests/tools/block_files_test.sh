@@ -63,6 +63,23 @@ for file in thirds.htg uneven.htg; do
     run isosurface "$file" "later_$file" --field dist --value 0 --threshold 1e-3 --time 1 -o timed.vtp
     cmp -s alone.vtp timed.vtp || fail "$file: the surface at the time of a file is another one"
 done
+# Pieces of several processes are one grid, with the bits of it, also where levels change between.
+for name in thirds uneven even plane_thirds plane_even; do
+    a=isosurface v=--value
+    [[ $name == plane_* ]] && a=isolines v=--values
+    run $a $name.htg --field dist $v 0 --threshold 2e-3 -o whole.vtp
+    run $a $name.phtg --field dist $v 0 --threshold 2e-3 -o pieces.vtp
+    cmp -s whole.vtp pieces.vtp || fail "$name: pieces have another surface: $(cat out)"
+    run info $name.htg && cp out whole && run info $name.phtg && cmp -s out whole || fail "$name: $(diff out whole)"
+done
+sed 's/even_1/even_2/' even.phtg >twice.phtg
+refused 1 "'twice.phtg': the piece 'even_2.htg': it has tree [0-9]+, which an earlier piece has, too" info twice.phtg
+sed 's/even_1/uneven_1/' even.phtg >other.phtg
+refused 1 "the piece 'uneven_1.htg': its trees lie elsewhere than those of the first piece" info other.phtg
+sed 's/even_1/gone/' even.phtg >gone.phtg
+refused 1 "'gone.htg' does not exist" info gone.phtg
+sed 's/even_1.htg/even.phtg/' even.phtg >list.phtg
+refused 1 "'list.phtg': its piece 'even.phtg' does not end in .htg" info list.phtg
 # Coordinates may go backwards.
 run isosurface backwards.htg --field dist --value 0 --threshold 0
 [ "$(value open_edges)" = 0 ] || fail "backwards: open edges: $(cat out)"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A program of its own, which reads .htg by VTK.
+"""A program of its own, which reads .htg and .phtg by VTK.
 
 Arguments: the file, and the name of a field or nothing. Answers as _answer.py says, with leaves,
 values and masks one after the other.
@@ -9,6 +9,7 @@ values and masks one after the other.
 from __future__ import annotations
 
 import html
+import os
 import re
 from typing import Any
 
@@ -17,7 +18,7 @@ from _answer import Refused, answer, packed
 from _hdf5_boxes import chosen
 from _read_amr import Complaints
 from _read_vtk import check_whole, names_of
-from _vtk_trees import trees_of
+from _vtk_trees import Trees, trees_of
 
 GHOSTS = "vtkGhostType"
 
@@ -87,26 +88,73 @@ def attribute(tag: bytes, name: str) -> str:
     return html.unescape(found[1].decode()) if found else ""
 
 
+def pieces_of(path: str) -> list[str]:
+    """The files that a list of pieces names, or the file alone."""
+    if not path.lower().endswith(".phtg"):
+        return [path]
+    with open(path, "rb") as file:
+        named = re.findall(rb"<Piece\b[^>]*>", file.read())
+    if not named:
+        raise Refused(f"{path} names no pieces")
+    sources = [attribute(each, "Source") for each in named]
+    for source in sources:
+        if not source.endswith(".htg"):
+            raise Refused(f"{path}: its piece '{source}' does not end in .htg")
+        if not os.path.isfile(os.path.join(os.path.dirname(path), source)):
+            raise Refused(f"{path}: its piece '{source}' does not exist")
+    return [os.path.join(os.path.dirname(path), source) for source in sources]
+
+
+def joined(parts: list[tuple[Trees, np.ndarray]]) -> tuple[Trees, np.ndarray]:
+    """The leaves of all pieces and their numbers; ghost cells are leaves of other pieces."""
+    first = parts[0][0]
+    max_level = max(trees.max_level for trees, _ in parts)
+    leaves = []
+    for trees, _ in parts:
+        own = trees.leaves[~trees.ghosts]
+        own[:, :-1] *= trees.factor ** (max_level - trees.max_level)
+        leaves.append(own)
+        same = [np.array_equal(a, b) for a, b in zip(trees.coordinates, first.coordinates)]
+        if trees.factor != first.factor or not all(same):
+            raise ValueError("the trees of a piece lie elsewhere than those of the first one")
+    masked = np.concatenate([trees.masked[~trees.ghosts] for trees, _ in parts])
+    numbers = np.concatenate([numbers[~trees.ghosts] for trees, numbers in parts])
+    none = np.zeros(0, np.int64)
+    own = np.concatenate(leaves)
+    return Trees(own, none, masked, none, max_level, first.factor, first.coordinates), numbers
+
+
+def read_piece(path: str, name: str, complaints: Complaints) -> tuple[str, Trees, np.ndarray]:
+    """The name of the field, the trees of a file, and the numbers of their leaves."""
+    file = TreeFile(path)
+    complaints.check(path)
+    wanted = chosen(path, name, file.names)
+    numbers = file.numbers(wanted)
+    complaints.check(path)
+    trees = trees_of(file.grid)
+    if len(numbers) <= trees.index.max():
+        raise ValueError(f"the field '{wanted}' has fewer numbers than the trees have cells")
+    return wanted, trees, numbers[trees.index]
+
+
 def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
     complaints = Complaints()
+    parts: list[tuple[Trees, np.ndarray]] = []
     try:
-        file = TreeFile(path)
-        complaints.check(path)
-        wanted = chosen(path, name, file.names)
-        numbers = file.numbers(wanted)
-        complaints.check(path)
-        trees = trees_of(file.grid)
+        for piece in pieces_of(path):
+            name, trees, numbers = read_piece(piece, name, complaints)
+            parts.append((trees, numbers))
+        if len(parts) > 1:
+            trees, numbers = joined(parts)
     except ValueError as error:
         raise Refused(f"{path}: {error}") from None
-    if len(numbers) <= trees.index.max():
-        raise Refused(f"{path}: the field '{wanted}' has fewer numbers than the trees have cells")
     arrays = {
         "leaves": (trees.leaves, "int64"),
-        "values": (numbers[trees.index], "float64"),
+        "values": (numbers, "float64"),
         "masked": (trees.masked, "uint8"),
     }
     place, data = packed(arrays)
-    place |= {"name": wanted, "max_level": trees.max_level, "factor": trees.factor}
+    place |= {"name": name, "max_level": trees.max_level, "factor": trees.factor}
     return place | {"coordinates": [axis.tolist() for axis in trees.coordinates]}, data
 
 

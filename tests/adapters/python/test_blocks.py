@@ -450,6 +450,35 @@ def test_trees_of_all_kinds(amr_files, name):
     )
 
 
+@pytest.mark.parametrize("name", ["thirds", "uneven", "even", "plane_thirds", "plane_even"])
+def test_pieces_of_trees(amr_files, name):
+    """Those of several processes are one grid, also where levels change between them."""
+    whole = nestgrid.load(amr_files / f"{name}.htg", "dist")
+    pieces = nestgrid.load(amr_files / f"{name}.phtg", "dist")
+    points = np.random.default_rng(1).uniform(0, 1, (200, whole.dimension))
+    np.testing.assert_array_equal(pieces.probe(points), whole.probe(points))
+    assert np.isfinite(whole.probe(points)).all()
+    if whole.dimension == 3:
+        found, expected = (field.isosurface(0, 2e-3).report() for field in (pieces, whole))
+        assert found["open_edges"] == 0 and found["area"] == pytest.approx(expected["area"], rel=1e-12)
+    both = nestgrid.load(amr_files / f"{name}.phtg", "both", component=1)
+    np.testing.assert_allclose(both.probe(points).ravel(), points[:, 0], atol=1e-12)
+
+
+def test_pieces_that_do_not_fit(amr_files):
+    text = (amr_files / "even.phtg").read_text()
+
+    def refused(sentence, old, new, error=nestgrid.IoError):
+        (amr_files / "wrong.phtg").write_text(text.replace(old, new))
+        with pytest.raises(error, match=sentence):
+            nestgrid.load(amr_files / "wrong.phtg", "dist")
+
+    refused("its piece 'gone.htg' does not exist", "even_1", "gone")
+    refused("its piece 'even.phtg' does not end in .htg", "even_1.htg", "even.phtg")
+    refused("trees of a piece lie elsewhere than those of the first one", "even_1", "uneven_1")
+    refused("overlaps leaf", "even_1", "even_2", nestgrid.InvalidInput)
+
+
 @pytest.mark.parametrize("version, mode", [(1, "Ascii"), (1, "Appended"), (2, "Ascii"), (2, "Binary")])
 def test_arrays_of_several_numbers_in_trees(amr_files, version, mode):
     """They have all their numbers, however a file has them, and are refused without a part."""

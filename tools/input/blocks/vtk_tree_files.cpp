@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hyper tree grids of VTK (.htg), which VTK reads in child processes. Where they are boxes of cells
-// they are drawn as such, otherwise as trees.
+// Hyper tree grids of VTK (.htg, .phtg), which VTK reads in child processes. Where they are boxes
+// of cells they are drawn as such, otherwise as trees.
 #include <limits>
 #include <tuple>
 
@@ -111,7 +111,7 @@ BlockFile open_htg(const fs::path& path) {
 double seconds_for(const Input& input, const fs::path& path) {
     require_file(path);
     const Format* const format = format_of(path);
-    if (format == nullptr || format != format_of("x.htg")) {
+    if (format == nullptr || (format != format_of("x.htg") && format != format_of("x.phtg"))) {
         throw InvalidInput("'" + path.string() + "' is no file of the format of the first one");
     }
     return input.read_limit > 0 ? input.read_limit : reading_time(bytes_to_read(path, *format));
@@ -141,9 +141,18 @@ const RegisteredFormat htg({.name = "VTK hyper tree grid",
                             .read_field = read_trees,
                             .describe = describe_htg});
 
+const RegisteredFormat phtg({.name = "VTK hyper tree grid in pieces",
+                             .endings = {".phtg"},
+                             .holds = "such trees in files of several processes",
+                             .options = {"--array", "--cells", "--component", "--read-limit"},
+                             .reads_beside = true,
+                             .read_field = read_trees,
+                             .describe = describe_htg});
+
 }  // namespace
 
 vtkSmartPointer<vtkHyperTreeGrid> read_htg(const fs::path& path) {
+    if (ending_of(path) == ".phtg") return read_phtg(path);
     check_xml_end(path);
     return read_quietly<vtkHyperTreeGrid>([&] {
         const vtkNew<TreeReader> reader;
