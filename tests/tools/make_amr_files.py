@@ -440,7 +440,7 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     near = lambda level, x: level < 2 and abs(ball(0.5)(*x)) < 0.1 / 3**level  # noqa: E731
     write_trees(path("thirds.htg"), even, 3, fields, near)
     write_trees(path("uneven.htg"), uneven, 2, fields, near)
-    if time == 0:
+    if prefix != "later_":
         write_trees(path("even.htg"), even, 2, fields, near)
         for name, corners, factor in (("thirds", even, 3), ("uneven", uneven, 2), ("even", even, 2)):
             write_pieces(path(f"{name}.phtg"), corners, factor, fields, near)
