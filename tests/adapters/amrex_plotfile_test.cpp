@@ -66,6 +66,16 @@ TEST(AmrexPlotfile, IsReadHoweverItIsWritten) {
     expect_same_as_blocks<3, double>({.has_empty_level = true});
 }
 
+/// A name may have blanks within, but not at its end.
+TEST(AmrexPlotfile, NamesFieldsAsTheyAreMeant) {
+    Blocks<2> blocks;
+    blocks.levels.push_back({{{{0, 0}, {3, 3}}}, {}});
+    const auto zero = [](const Point&, int) { return 0.0; };
+    write_plotfile<2, double>(folder("plt00003"), blocks, {"x velocity (m/s)  ", "b\t\r"}, zero, 0);
+    const std::vector<std::string> expected{"x velocity (m/s)", "b"};
+    EXPECT_EQ(AmrexPlotfile(folder("plt00003")).fields(), expected);
+}
+
 /// Cells that are free by less than the least part have no number, in either order of bytes; those
 /// of a file that tells no such part, and the parts themselves, are as they are.
 TEST(AmrexPlotfile, HidesWhatEmbeddedBoundariesCover) {

@@ -171,6 +171,53 @@ TEST(BlockFields, HaveOneGradientAtANode) {
     expect_gradients_by_key<3>();
 }
 
+/// In a plane across an axis, places and gradients are those of the plane across z along other axes.
+TEST(BlockFields, LieInPlanesAcrossAnyAxis) {
+    const Blocks<2> flat = random_blocks<2>({.seed = 3, .side = 4});
+    std::mt19937 random(3);
+    const BlockData<2> data(flat, [&](const Point&) { return uniform(random); });
+    const auto drawn = [&](const Blocks<2>& blocks) {
+        std::vector<Point> found;  // places and gradients of the corners of all elements
+        const BlockGrid<2> grid(blocks);
+        const BlockCells<2, double> field(grid, data.arrays());
+        const auto hierarchy = erase(grid, field);
+        const engine::Walk<double> walk(hierarchy, {.keys = true, .positions = true});
+        engine::for_each_element(walk, false, [&](const auto& view, const engine::Split&) {
+            std::array<Point, max_corners> places;
+            std::array<Point, max_corners> gradients;
+            walk.corners(view, nullptr, places.data());
+            walk.gradients(view, std::span(gradients).first(view.corner_count()));
+            found.insert(found.end(), places.begin(), places.begin() + 4);
+            found.insert(found.end(), gradients.begin(), gradients.begin() + 4);
+        });
+        return found;
+    };
+    const std::vector<Point> expected = drawn(flat);
+    ASSERT_GT(expected.size(), 100U);
+    for (const std::array<int, 2> axes : {std::array{0, 2}, std::array{1, 2}}) {
+        Blocks<2> turned = flat;
+        turned.axes = axes;
+        turned.origin = {0.3, 0.3, 0.3};
+        for (std::size_t d = 0; d < 2; ++d) {
+            turned.origin[static_cast<std::size_t>(axes[d])] = flat.origin[d];
+        }
+        const auto across = static_cast<std::size_t>(3 - axes[0] - axes[1]);
+        const std::vector<Point> found = drawn(turned);
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            for (std::size_t d = 0; d < 2; ++d) {
+                ASSERT_EQ(found[i][static_cast<std::size_t>(axes[d])], expected[i][d]);
+            }
+            ASSERT_EQ(found[i][across], i / 4 % 2 == 0 ? 0.3 : 0.0);
+        }
+    }
+    for (const std::array<int, 2> axes : {std::array{1, 0}, std::array{1, 1}, std::array{1, 3}}) {
+        Blocks<2> wrong = flat;
+        wrong.axes = axes;
+        EXPECT_THROW(BlockGrid<2>{wrong}, InvalidInput);
+    }
+}
+
 /// Boxes cut in other ways, with other ghosts, in another order, give the same values.
 TEST(BlockFields, DoNotDependOnHowBoxesAreCut) {
     for (unsigned seed = 1; seed < 6; ++seed) {

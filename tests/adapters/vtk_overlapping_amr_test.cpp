@@ -121,7 +121,7 @@ TEST(VtkOverlappingAmr, IsRefusedWithASentence) {
         "block 0 of level 0 has an array 'ball' of the type vtkDoubleArray, not of floats one "
         "behind the other");
     EXPECT_EQ(refusal([&] { vtk_blocks<2>(*amr); }),
-              "the overlapping AMR does not lie in a plane of constant z");
+              "the overlapping AMR does not lie in a plane across an axis");
     EXPECT_EQ(
         refusal([&] { vtk_blocks<3>(*amr_of(blocks, [](unsigned, unsigned) { return false; })); }),
         "the overlapping AMR has no data");

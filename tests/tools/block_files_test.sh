@@ -63,30 +63,48 @@ for file in thirds.htg uneven.htg; do
     run isosurface "$file" "later_$file" --field dist --value 0 --threshold 1e-3 --time 1 -o timed.vtp
     cmp -s alone.vtp timed.vtp || fail "$file: the surface at the time of a file is another one"
 done
+# Pieces of several processes are one grid, with the bits of it, also where levels change between.
+for name in thirds uneven even plane_thirds plane_even; do
+    a=isosurface v=--value
+    [[ $name == plane_* ]] && a=isolines v=--values
+    run $a $name.htg --field dist $v 0 --threshold 2e-3 -o whole.vtp
+    run $a $name.phtg --field dist $v 0 --threshold 2e-3 -o pieces.vtp
+    cmp -s whole.vtp pieces.vtp || fail "$name: pieces have another surface: $(cat out)"
+    run info $name.htg && cp out whole && run info $name.phtg && cmp -s out whole || fail "$name: $(diff out whole)"
+done
+sed 's/even_1/even_2/' even.phtg >twice.phtg
+refused 1 "'twice.phtg': the piece 'even_2.htg': it has tree [0-9]+, which an earlier piece has, too" info twice.phtg
+sed 's/even_1/uneven_1/' even.phtg >other.phtg
+refused 1 "the piece 'uneven_1.htg': its trees lie elsewhere than those of the first piece" info other.phtg
+sed 's/even_1/gone/' even.phtg >gone.phtg
+refused 1 "'gone.htg' does not exist" info gone.phtg
+sed 's/even_1.htg/even.phtg/' even.phtg >list.phtg
+refused 1 "'list.phtg': its piece 'even.phtg' does not end in .htg" info list.phtg
 # Coordinates may go backwards.
 run isosurface backwards.htg --field dist --value 0 --threshold 0
 [ "$(value open_edges)" = 0 ] || fail "backwards: open edges: $(cat out)"
 awk -v area="$(value area)" -v volume="$(value volume)" 'BEGIN { exit !(area > 1.08 && area < 1.135 && volume > 0.1) }' ||
     fail "a sphere in trees that go backwards: $(cat out)"
-# Trees in a plane lie there in space, whichever axis it is across.
+# Trees and boxes in a plane lie there in space, whichever axis it is across.
 ends() { /usr/bin/python3 -c 'import sys, vtk
 reader = vtk.vtkXMLPolyDataReader()
 reader.SetFileName(sys.argv[1])
 reader.Update()
 ends = reader.GetOutput().GetBounds()
 print(*(f"{a:.3f} {b:.3f}" for a, b in zip(ends[::2], ends[1::2])))' "$1"; }
-for factor in 2 3; do
+for kind in _2.htg _3.htg .vthb; do
     for axis in x y z; do
-        run info plane_across_${axis}_$factor.htg
+        run info plane_across_$axis$kind
         [ "$(value dimension)" = 2 ] || fail "info: across $axis: $(cat out)"
-        run isolines plane_across_${axis}_$factor.htg --field dist --values 0 --threshold 0 -o l.vtp
-        value length >>across_$factor
+        run isolines plane_across_$axis$kind --field dist --values 0 --threshold 0 -o l.vtp
+        value length >>across$kind
         case $axis in x) at=1 ;; y) at=3 ;; z) at=5 ;; esac
         ends l.vtp | awk -v at=$at '{ if ($at != "0.300" || $(at + 1) != "0.300") exit 1 }' ||
             fail "lines across $axis lie elsewhere: $(ends l.vtp)"
     done
-    [ "$(sort -u across_$factor | wc -l)" = 1 ] || fail "lengths across axes: $(cat across_$factor)"
+    [ "$(sort -u across$kind | wc -l)" = 1 ] || fail "lengths across axes: $(cat across$kind)"
 done
+cmp -s <(head -1 across.vthb) all_lengths || fail "boxes across axes have other lines: $(cat across.vthb)"
 # A field of cells colours the surface of another one as a formula does, at any time.
 for file in trees.htg thirds.htg uneven.htg; do
     for by in plac x; do
@@ -101,9 +119,14 @@ for file in trees.htg thirds.htg uneven.htg; do
     refused 1 "expression 'plack' is no expression" \
         isolines "$file" --field dist --on-surface 0 --by plack --values 0.5 -o x.vtp
 done
-# A component of a vector colours by its number, and none without one. VTK 9.1 keeps a part of the
-# numbers of vectors in hyper trees alone.
-for file in amr.vthb; do
+# A component of a vector colours by its number, and none without one. It has the surface of a field
+# of its own.
+for file in amr.vthb trees.htg thirds.htg uneven.htg; do
+    for chosen in "dist" "both --component 0"; do
+        run isosurface $file --field $chosen --value 0 --threshold 0
+        value area
+    done >areas
+    [ "$(sort -u areas | wc -l)" = 1 ] || fail "$file: a component has another surface: $(cat areas)"
     for by in both:1 plac; do
         run isolines $file --field dist --on-surface 0 --by $by --values 0.4,0.6 --threshold 0 -o by.vtp
         value length >$by.lengths
@@ -134,14 +157,63 @@ run isosurface chombo.hdf5 --field dist --value 0 --threshold 0 --cells centres
 
 refused 1 "'both' has 2 numbers per cell, not one: choose by --component, from 0 to 1" \
     isosurface amr.vthb --field both --value 0
-run isosurface amr.vthb --field both --component 0 --value 0 --threshold 0
-[ "$(value area)" = "$(head -1 all_areas)" ] || fail "a component has another surface: $(cat out)"
+# So it has in files of version 1 and of text, where a field in part keeps no other one away.
+rewrite() { /usr/bin/python3 -c 'import sys, vtk
+reader, writer = vtk.vtkXMLHyperTreeGridReader(), vtk.vtkXMLHyperTreeGridWriter()
+reader.SetFileName("plane_thirds.htg")
+reader.Update()
+grid = reader.GetOutputDataObject(0)
+both = grid.GetCellData().GetArray("both")
+for c, name in enumerate(("dist", "plac")):
+    both.CopyComponent(c, grid.GetCellData().GetArray(name), 0)
+writer.SetDataSetMajorVersion(int(sys.argv[1]))
+getattr(writer, "SetDataModeTo" + sys.argv[2])()
+writer.SetFileName("other.htg")
+writer.SetInputDataObject(grid)
+writer.Write()' "$@"; }
+for how in "1 Binary" "1 Appended" "1 Ascii" "2 Ascii"; do
+    rewrite $how
+    for chosen in "plac" "both --component 1"; do
+        run isolines other.htg --field $chosen --values 0.6 --threshold 0 -o l.vtp
+        value length
+    done >lengths
+    [ "$(sort -u lengths | wc -l)" = 1 ] || fail "$how: a component has other lines: $(cat lengths)"
+    [[ $how == *Ascii ]] || continue
+    sed -i '/Name="both"/,/<InformationKey/ { /^ *[0-9-]/d }' other.htg
+    run isolines other.htg --field plac --values 0.6 --threshold 0 -o l.vtp
+    refused 1 "the field 'both' has fewer numbers than the trees have cells" \
+        isolines other.htg --field both --component 1 --values 0.6 -o l.vtp
+done
 refused 1 "'plane_chombo.hdf5' has 2 dimensions, not 3" \
     isosurface chombo.hdf5 plane_chombo.hdf5 --field dist --value 0 --time 0.5
 refused 1 "'amr.vthb' is no file of the format of the first one" \
     isosurface chombo.hdf5 amr.vthb --field dist --value 0 --time 0.5
 refused 1 "round_hdf5_plt_cnt_0000': it has cylindrical coordinates, not cartesian ones" info round_hdf5_plt_cnt_0000
-refused 1 "'plane_across_x.vthb': it does not lie in space, or in a plane of constant z" info plane_across_x.vthb
+refused 1 "'plane_across_y.vthb' has another grid than the first input" \
+    isolines plane_across_x.vthb plane_across_y.vthb --field dist --values 0 --time 0.5 -o l.vtp
+# As others write these files: PLUTO says where cells are, texts have their lengths beside them,
+# levels may be empty.
+edited() { cp "$1" "$2" && /usr/bin/python3 -c 'import sys, h5py, numpy as np
+with h5py.File(sys.argv[1], "a") as file:
+    levels = [file[f"level_{i}"] for i in range(3)] if "level_0" in file else []
+    exec(sys.argv[2])' "$2" "$3"; }
+pluto='for level in levels: level.attrs.update(domBeg1=-1.0, domBeg2=3.0, domBeg3=0.5, g_x2stretch=2.0, g_x3stretch=1.0, geometry=1, logr=0)'
+edited chombo.hdf5 pluto.hdf5 "$pluto"
+run info pluto.hdf5
+grep -qE '^origin +-1 3 0.5$' out && grep -qE '^spacing +0.0625 0.125 0.0625$' out || fail "PLUTO: $(cat out)"
+edited pluto.hdf5 round.hdf5 'levels[0].attrs["geometry"] = 4'
+refused 1 "'round.hdf5': its coordinates are curved, not cartesian" info round.hdf5
+edited pluto.hdf5 logarithmic.hdf5 'levels[0].attrs["logr"] = 1'
+refused 1 "'logarithmic.hdf5': its cells are not of one size: they grow with the radius" info logarithmic.hdf5
+edited chombo.hdf5 empty.hdf5 'file.attrs["num_levels"] = np.int32(4)
+file["level_3/boxes"] = np.zeros(0, levels[0]["boxes"].dtype)
+for i, name in enumerate(["of any length", "dist"]): file.attrs[f"component_{i}"] = name'
+run isosurface empty.hdf5 --field "of any length" --value 0 --threshold 0
+[ "$(value area)" = "$(head -1 all_areas)" ] || fail "an empty level and a long name: $(cat out)"
+edited athena.athdf thin.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 8], ">i4")'
+refused 1 "'thin.athdf': its blocks are one cell thick along x or y: of slices, those across z are read" info thin.athdf
+edited athena.athdf line.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 1], ">i4")'
+refused 1 "'line.athdf': it has 1 dimension, not 2 or 3" info line.athdf
 mv amr/amr_3.vti amr/gone.vti
 refused 1 "^nestgrid: 'amr.vthb': " info amr.vthb
 truncate -s 300000 athena.athdf

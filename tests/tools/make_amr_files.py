@@ -72,8 +72,8 @@ def values(block: Block, f: Function, blocks: list[Block]) -> np.ndarray:
 Fields = dict[str, Function]
 
 
-def write_vthb(path: str, dim: int, fields: Fields, across: int = 2) -> None:
-    """The boxes of a plane lie across an axis."""
+def write_vthb(path: str, dim: int, fields: Fields, across: int = 2, place: float = 0) -> None:
+    """The boxes of a plane lie across an axis, at a place of it."""
     blocks = blocks_of(dim)
 
     def placed(numbers: list[Any], flat: Any) -> list[Any]:
@@ -84,7 +84,8 @@ def write_vthb(path: str, dim: int, fields: Fields, across: int = 2) -> None:
     amr = vtk.vtkOverlappingAMR()
     amr.Initialize(3, [len(level) for level in levels])
     amr.SetGridDescription(vtk.VTK_XYZ_GRID if dim == 3 else planes[across])
-    amr.SetOrigin([0, 0, 0])
+    origin = np.array(placed([0.0] * dim, place))
+    amr.SetOrigin(origin)
     for number, level in enumerate(levels):
         step = 0.5 / N / 2**number
         amr.SetSpacing(number, [step] * 3)
@@ -93,7 +94,7 @@ def write_vthb(path: str, dim: int, fields: Fields, across: int = 2) -> None:
             high = placed([N * a + N - 1 for a in block[1]], -1)
             amr.SetAMRBox(number, i, vtk.vtkAMRBox(low, high))
             grid = vtk.vtkUniformGrid()
-            grid.SetOrigin([step * a for a in low])
+            grid.SetOrigin(origin + step * np.array(low))
             grid.SetSpacing([step] * 3)
             grid.SetDimensions(placed([N + 1] * dim, 1))
             vector = []
@@ -161,11 +162,13 @@ def write_trees(
     divide: Callable[[int, np.ndarray], bool],
     across: int = 2,
     place: float = 0,
+    owner: Callable[[int], int] | None = None,
 ) -> None:
     """A hyper tree grid with values at the centres of all cells.
 
     corners: coordinates of the corners of trees, one array a direction; divide(level, centre);
-    of two directions: in the plane across an axis at a place of it
+    of two directions: in the plane across an axis at a place of it; owner: whether a tree is one of
+    this piece, 0, a ghost, 1, or not here, 2
     """
     dim = len(corners)
     trees = vtk.vtkHyperTreeGrid()
@@ -191,21 +194,49 @@ def write_trees(
             cursor.ToParent()
 
     counts = [len(x) - 1 for x in corners]
+    ghosts: list[int] = []
     for tree in range(int(np.prod(counts))):
+        if owner is not None and owner(tree) == 2:
+            continue
         trees.InitializeNonOrientedCursor(cursor, tree, True)
         at = [tree // int(np.prod(counts[:d])) % counts[d] for d in range(dim)]
         low = np.array([x[i] for x, i in zip(corners, at)])
         write(0, low, np.array([x[i + 1] for x, i in zip(corners, at)]) - low)
+        ghosts += [0 if owner is None else owner(tree)] * (len(centres) - len(ghosts))
     columns = {name: f(*np.array(centres).T) for name, f in names.items()}
     for name, column in (columns | {"both": np.transpose(list(columns.values()))}).items():
         array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
         array.SetName(name)
+        trees.GetCellData().AddArray(array)
+    if any(ghosts):
+        array = numpy_to_vtk(np.array(ghosts, np.uint8), deep=True)
+        array.SetName("vtkGhostType")
         trees.GetCellData().AddArray(array)
     writer = vtk.vtkXMLHyperTreeGridWriter()
     writer.SetDataModeToBinary()  # where it appends, it writes ranges over the first line
     writer.SetFileName(path)
     writer.SetInputDataObject(trees)
     assert writer.Write()
+
+
+def write_pieces(path: str, *trees: Any) -> None:
+    """The trees of three processes, and a layer of ghosts around those of each: layers of cubes."""
+    corners = trees[0]
+    layer = int(np.prod([len(x) - 1 for x in corners[:-1]]))
+    ends = [0, 3, 4, len(corners[-1]) - 1]
+    folder, name = os.path.split(path)
+    for piece, (begin, end) in enumerate(zip(ends, ends[1:])):
+
+        def owner(tree: int, begin: int = begin, end: int = end) -> int:
+            at = tree // layer
+            return 0 if begin <= at < end else 1 if begin - 1 <= at <= end else 2
+
+        write_trees(os.path.join(folder, f"{name[:-5]}_{piece}.htg"), *trees, owner=owner)
+    pieces = "".join(f'<Piece Source="{name[:-5]}_{i}.htg"/>' for i in range(3))
+    with open(path, "w", encoding="utf-8") as file:
+        file.write('<?xml version="1.0"?>\n<VTKFile type="PHyperTreeGrid" version="0.1" ')
+        file.write('byte_order="LittleEndian" header_type="UInt32">\n<PHyperTreeGrid>')
+        file.write(f"{pieces}</PHyperTreeGrid>\n</VTKFile>\n")
 
 
 def write_flash(path: str, dim: int, fields: Fields, time: float = 0, geometry: str = "cartesian") -> None:
@@ -399,8 +430,6 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     fields = {"dist": ball(0.45 + 0.1 * time), "plac": place}
     path = lambda name: os.path.join(folder, prefix + name)  # noqa: E731
     write_vthb(path("amr.vthb"), dim, fields)
-    if dim == 2:
-        write_vthb(path("across_x.vthb"), dim, fields, across=0)
     write_htg(path("trees.htg"), dim, fields)
     write_flash(path("run_hdf5_plt_cnt_0000"), dim, fields, time)
     write_flash(path("round_hdf5_plt_cnt_0000"), dim, fields, time, "cylindrical")
@@ -411,7 +440,12 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     near = lambda level, x: level < 2 and abs(ball(0.5)(*x)) < 0.1 / 3**level  # noqa: E731
     write_trees(path("thirds.htg"), even, 3, fields, near)
     write_trees(path("uneven.htg"), uneven, 2, fields, near)
+    if prefix != "later_":
+        write_trees(path("even.htg"), even, 2, fields, near)
+        for name, corners, factor in (("thirds", even, 3), ("uneven", uneven, 2), ("even", even, 2)):
+            write_pieces(path(f"{name}.phtg"), corners, factor, fields, near)
     for axis, name in enumerate("xyz" if dim == 2 else ""):
+        write_vthb(path(f"across_{name}.vthb"), dim, fields, axis, 0.3)
         for factor in (2, 3):
             write_trees(path(f"across_{name}_{factor}.htg"), even, factor, fields, near, axis, 0.3)
     write_trees(path("backwards.htg"), [even[0][::-1], *even[1:]], 2, fields, near)

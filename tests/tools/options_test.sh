@@ -102,7 +102,7 @@ for command in isosurface band slice isolines boundary probe info; do
     void $command 'is for .raw files' "v.vti $options" --type uint8
     void $command 'is for .raw files' "v.nii.gz $options" --endian big
     void $command 'is for .raw files' "v.nrrd $options" --spacing 1,1,1
-    void $command 'is for AMReX plotfile, .athdf, Chombo, .dcm, .hierarchy, FLASH, .pvd, .htg, .vti, .vthb, .vtu, .pvtu and .nestgrid' "v.mha $options" --array value
+    void $command 'is for AMReX plotfile, .athdf, Chombo, .dcm, .hierarchy, FLASH, .pvd, .htg, .phtg, .vti, .vthb, .vtu, .pvtu and .nestgrid' "v.mha $options" --array value
     void $command 'is for AMReX plotfile, .* files' "v.mha $options" --cells centres
     echo "$command --cells" >>covered
     void $command 'one frame only' "v.mha $options" --frame 0
@@ -293,7 +293,7 @@ for command in height surface; do
     options=$([ $command = height ] && echo --scale 2)
     keep='-o kept/x.vtp'
     differ $command --array "plane.nestgrid $options --array x" "plane.nestgrid $options --array x*y"
-    void $command 'is for AMReX plotfile, .athdf, Chombo, .dcm, .hierarchy, FLASH, .pvd, .htg, .vti, .vthb, .vtu, .pvtu and .nestgrid' "hills.pgm $options" --array value
+    void $command 'is for AMReX plotfile, .athdf, Chombo, .dcm, .hierarchy, FLASH, .pvd, .htg, .phtg, .vti, .vthb, .vtu, .pvtu and .nestgrid' "hills.pgm $options" --array value
     void $command 'is for AMReX plotfile, .* files' "hills.pgm $options" --cells centres
     echo "$command --cells" >>covered
     void $command 'is for standard input' "hills.pgm $options" --input-format pgm

@@ -173,7 +173,9 @@ def path(value: Any) -> str:
 
 
 def array(value: Any) -> np.ndarray:
-    """An array of numbers of any type."""
+    """An array of numbers of any type; masked ones are nan."""
+    if np.ma.is_masked(value):
+        value = _with_holes(value)
     try:
         if isinstance(value, (str, bytes, bytearray, dict, set)) or value is None:
             raise TypeError
@@ -244,7 +246,7 @@ def shape(*parts: tuple[str, int]) -> Kind:
 
 def _with_holes(array: np.ma.MaskedArray) -> np.ndarray:
     """A copy with nan for masked entries, of a type that keeps all other numbers."""
-    if array.dtype.kind not in "iuf":
+    if array.dtype.kind not in "biuf":
         return np.ma.getdata(array)  # which is refused
     small = array.dtype.itemsize <= (4 if array.dtype.kind == "f" else 2)
     return np.ma.filled(array.astype(np.float32 if small else np.float64), np.nan)

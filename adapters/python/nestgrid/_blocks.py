@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _arguments as kinds
 from . import _nestgrid
-from ._arguments import Unfit, name_of, not_a, sequence, takes, whole
+from ._arguments import Unfit, name_of, not_a, optional, sequence, takes, whole
 from ._fields import Field
 from ._nestgrid import InvalidInput
 from ._sources import Frames, Numbers, Rule, _placed
@@ -48,19 +48,26 @@ class Blocks(Field):
     ratio    how many cells of the next level there are along a side of a cell, a power of two; or
              one number for each level but the first
     spacing  size of the cells of level 0, in units of length; None: 1
-    origin   where the first cell of level 0 begins; None: 0
+    origin   where the first cell of level 0 begins, by index, or three numbers; None: 0
+    axes     of space along which the indices go, ascending: (1, 2) is a plane across x; None: the
+             first ones
     rule     of the values at nodes: "smooth" means, or sharper ones that take the values for those
              at "centres", or for "means" over cells, as finite volumes have them
     name     of the data, for files and tables
     unit     of length, such as "mm"
 
-    Leaves with the value nan are not drawn. Raises InvalidInput where boxes overlap, are not
-    aligned to the ratio or do not lie in the level before.
+    Leaves with the value nan, or masked ones, are not drawn. Raises InvalidInput where boxes
+    overlap, are not aligned to the ratio or do not lie in the level before.
     """
 
     __module__ = "nestgrid"
 
-    @takes(boxes=sequence(_box, "a sequence of boxes"), ratio=_ratio, rule=name_of(Rule))
+    @takes(
+        boxes=sequence(_box, "a sequence of boxes"),
+        ratio=_ratio,
+        axes=optional(sequence(whole(0, 2), "axes from 0 to 2")),
+        rule=name_of(Rule),
+    )
     def __init__(
         self,
         boxes: Sequence[Box],
@@ -68,6 +75,7 @@ class Blocks(Field):
         ratio: int | Sequence[int] = 2,
         spacing: Numbers | None = None,
         origin: Numbers | None = None,
+        axes: Sequence[int] | None = None,
         rule: Rule = "smooth",
         name: str = "",
         unit: str = "",
@@ -91,16 +99,27 @@ class Blocks(Field):
                 "the first is needed"
             )
         step, start, _ = _placed(dimension, spacing, origin)
+        along = list(range(dimension)) if axes is None else list(axes)
+        if len(along) != dimension or along != sorted(set(along)):
+            raise InvalidInput(f"Blocks(): axes are {along}, not {dimension} that ascend")
         single = all(array.dtype == np.float32 for _, _, array in boxes)
         kind = np.float32 if single else np.float64
+        arrays = [np.asarray(array, kind) for _, _, array in boxes]
+        if all(np.isnan(array).all() for array in arrays):
+            raise InvalidInput("Blocks(): no cell has a value")
         self._built_of = (
-            [(level, lower, np.asarray(array, kind)) for level, lower, array in boxes],
+            [
+                (level, lower, array.copy() if 0 in array.strides else array)  # as broadcast ones
+                for (level, lower, _), array in zip(boxes, arrays)
+            ],
             ratios,
             step,
             start,
+            along,
             rule,
         )
-        self._set(_nestgrid.blocks(self._built_of[0], [1, *ratios], step, start, rule), name, unit)
+        place = (step, start, along, rule)
+        self._set(_nestgrid.blocks(self._built_of[0], [1, *ratios], *place), name, unit)
 
     def _size(self) -> str:
         boxes, ratios = self._built_of[:2]
@@ -120,8 +139,8 @@ class BlockFrames(Frames):
         """names are those of files, for sentences."""
         frames = cls.__new__(cls)
         built = [
-            (boxes, [1, *ratios], step, start, rule)
-            for boxes, ratios, step, start, rule in (each._built_of for each in blocks)
+            (boxes, [1, *ratios], step, start, along, rule)
+            for boxes, ratios, step, start, along, rule in (each._built_of for each in blocks)
         ]
         frames._frames = _nestgrid.block_frames(built, times, names)
         frames._blocks = blocks
@@ -146,10 +165,10 @@ def _blocks_of(
     ratios: list[int],
     spacing: np.ndarray,
     origin: np.ndarray,
+    axes: list[int],
     rule: Rule,
     name: str,
     unit: str,
 ) -> Blocks:
-    return Blocks(
-        boxes, ratio=ratios, spacing=spacing, origin=origin, rule=rule, name=name, unit=unit
-    )
+    place: dict[str, Any] = {"spacing": spacing, "origin": origin, "axes": axes}
+    return Blocks(boxes, ratio=ratios, **place, rule=rule, name=name, unit=unit)

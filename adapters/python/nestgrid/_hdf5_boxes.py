@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import os
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,18 @@ def chosen(path: str, name: str, names: list[str]) -> str:
     return name or names[0]
 
 
+def text(value: Any) -> str:
+    """A text of a file, of any encoding, without what fills it up."""
+    first = np.ravel(value)[0]
+    decoded = first.decode("utf-8", "replace") if isinstance(first, bytes) else str(first)
+    return decoded.strip(" \0")
+
+
+def numbers(value: Any) -> list[Any]:
+    """The numbers of an attribute: one, an array, or a vector with names."""
+    return np.ravel(value.tolist() if isinstance(value, np.generic) else value).tolist()
+
+
 def told(time: Any) -> dict[str, float]:
     """The time of a file, where it tells one."""
     return {} if time is None else {"time": float(np.ravel(time)[0])}
@@ -33,49 +46,69 @@ def told(time: Any) -> dict[str, float]:
 def read_chombo(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
     """Each level has the numbers of its boxes, box by box, field by field, with ghost cells."""
     dim = int(file["Chombo_global"].attrs["SpaceDim"])
+    if dim not in (2, 3):
+        raise Refused(f"{path} has {dim} dimensions, not 2 or 3")
     fields = int(file.attrs["num_components"])
-    names = [file.attrs[f"component_{i}"].decode() for i in range(fields)]
+    names = [text(file.attrs[f"component_{i}"]) for i in range(fields)]
     wanted = chosen(path, name, names)
     number = names.index(wanted)
     levels = [file[f"level_{i}"] for i in range(int(file.attrs["num_levels"]))]
+    levels = list(takewhile(lambda level: level["boxes"].shape[0] > 0, levels))
+    if not levels:
+        raise Refused(f"{path}: level_0 has no boxes")
+    coarse = levels[0].attrs
+    if "domBeg1" in coarse and (coarse.get("geometry", 1) != 1 or coarse.get("logr", 0) != 0):
+        raise Refused(f"{path} has curved or logarithmic coordinates, not cartesian ones")
     boxes: Boxes = []
     for number_of_level, level in enumerate(levels):
         ghosts = [0] * dim
         if "outputGhost" in level.get("data_attributes", level).attrs:
-            ghosts = list(level["data_attributes"].attrs["outputGhost"].tolist())
+            ghosts = (numbers(level["data_attributes"].attrs["outputGhost"]) * dim)[:dim]
         data, begin = level["data:datatype=0"], 0
         for box in level["boxes"][()].tolist():
             shape = [h - l + 1 + 2 * g for l, h, g in zip(box[:dim], box[dim:], ghosts)]
             cells = int(np.prod(shape))
-            numbers = data[begin + number * cells : begin + (number + 1) * cells]
+            of_box = data[begin + number * cells : begin + (number + 1) * cells]
             begin += fields * cells
             inside = tuple(slice(g, n - g) for g, n in zip(ghosts, shape))
-            array = numbers.reshape(shape, order="F")[inside]
+            array = of_box.reshape(shape, order="F")[inside]
             boxes.append((number_of_level, [int(a) for a in box[:dim]], array))
         if begin != data.shape[0]:
             raise Refused(f"{path}: a level has another number of values than its boxes")
-    step = np.ones(dim) * levels[0].attrs["vec_dx" if "vec_dx" in levels[0].attrs else "dx"]
-    start = np.min([low for level, low, _ in boxes if level == 0], axis=0)
-    ratios = [np.ravel(level.attrs["ref_ratio"])[0] for level in levels[:-1]]
-    place = {"ratio": [int(each) for each in ratios], "spacing": step.tolist()}
-    time = file.attrs.get("time", levels[0].attrs.get("time"))
-    return boxes, place | {"origin": (start * step).tolist(), "name": wanted} | told(time)
+    step = np.ones(dim) * numbers(coarse["vec_dx" if "vec_dx" in coarse else "dx"])
+    step *= [float(coarse.get(f"g_x{d + 1}stretch", 1)) for d in range(dim)]  # as PLUTO has it
+    start = np.min([low for level, low, _ in boxes if level == 0], axis=0) * step
+    start += [float(coarse.get(f"domBeg{d + 1}", 0)) for d in range(dim)]
+    ratios = [set(numbers(level.attrs["ref_ratio"])) for level in levels[:-1]]
+    if any(len(each) > 1 for each in ratios):
+        raise Refused(f"{path}: its ratios differ by direction: one power of two is read")
+    place = {"ratio": [int(each.pop()) for each in ratios], "spacing": step.tolist()}
+    time = file.attrs.get("time", coarse.get("time"))
+    return boxes, place | {"origin": start.tolist(), "name": wanted} | told(time)
 
 
 def read_athena(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
     """Leaves alone: the blocks that they replaced are added, with one array that nobody reads."""
-    coordinates = np.ravel(file.attrs["Coordinates"])[0].decode()
+    coordinates = text(file.attrs["Coordinates"])
     if coordinates not in ("cartesian", "minkowski"):
         raise Refused(f"{path} has {coordinates} coordinates, not cartesian ones")
     extent = np.array([file.attrs[f"RootGridX{d + 1}"] for d in range(3)], float)
     size = [int(n) for n in file.attrs["MeshBlockSize"]]
     dim = 2 if size[2] == 1 else 3
-    if size[1] == 1 or (extent[:dim, 2] != 1).any():
-        raise Refused(f"{path} has one dimension, or cells of several sizes")
-    names = [each.decode() for each in file.attrs["VariableNames"]]
-    wanted = chosen(path, name, names)
-    sets = [each.decode() for each in file.attrs["DatasetNames"]]
+    if size[1:] == [1, 1]:
+        raise Refused(f"{path} has 1 dimension, not 2 or 3")
+    if 1 in size[:2]:
+        thin = "its blocks are one cell thick along x or y: of slices, those across z are read"
+        raise Refused(f"{path}: {thin}")
+    if (extent[:, 2] != 1).any():
+        raise Refused(f"{path}: its cells are not of one size")
+    sets = [text(each) for each in file.attrs["DatasetNames"]]
     members = [(s, v) for s, n in zip(sets, file.attrs["NumVariables"]) for v in range(n)]
+    names = [text(each) for each in file.attrs["VariableNames"]]
+    if len(names) < len(members):
+        raise Refused(f"{path}: a variable has no name")
+    names = names[: len(members)]
+    wanted = chosen(path, name, names)
     data_set, variable = members[names.index(wanted)]
     data = file[data_set][variable]
     levels = [int(level) for level in file["Levels"]]
@@ -111,7 +144,7 @@ def whole(numbers: np.ndarray, path: str) -> list[int]:
 def value_in(file: Any, rows: str, wanted: str) -> Any:
     """The value of a name in FLASH's rows of names and values; None where there is none."""
     for key, value in file[rows][()] if rows in file else []:
-        if key.decode().strip(" \0") == wanted:
+        if text(key) == wanted:
             return value
     return None
 
@@ -119,10 +152,9 @@ def value_in(file: Any, rows: str, wanted: str) -> Any:
 def read_flash(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
     """Blocks of one size, those that finer ones replace among them."""
     geometry = value_in(file, "string runtime parameters", "geometry")
-    if geometry is not None and geometry.decode().strip(" \0") != "cartesian":
-        what = geometry.decode().strip(" \0")
-        raise Refused(f"{path} has {what} coordinates, not cartesian ones")
-    names = [each.decode().strip() for each in np.ravel(file["unknown names"][()])]
+    if geometry is not None and text(geometry) != "cartesian":
+        raise Refused(f"{path} has {text(geometry)} coordinates, not cartesian ones")
+    names = [text(each) for each in np.ravel(file["unknown names"][()])]
     wanted = chosen(path, name, names)
     data = file[wanted.ljust(4)][()]
     size = np.array([n for n in data.shape[:0:-1] if n > 1])
@@ -159,18 +191,18 @@ def grids_of(path: str) -> list[dict[str, str]]:
 def read_enzo(path: str, name: str, open_file: Any) -> tuple[Boxes, dict[str, Any]]:
     """A text lists the grids, whose levels follow from the sizes of their cells."""
     grids = grids_of(path)
-    numbers = lambda grid, key: np.array(grid[key].split(), float)  # noqa: E731
-    start = np.min([numbers(grid, "GridLeftEdge") for grid in grids], axis=0)
+    row = lambda grid, key: np.array(grid[key].split(), float)  # noqa: E731
+    start = np.min([row(grid, "GridLeftEdge") for grid in grids], axis=0)
     found: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     for grid in grids:
-        low = numbers(grid, "GridLeftEdge")
-        size = numbers(grid, "GridEndIndex") - numbers(grid, "GridStartIndex") + 1
+        low = row(grid, "GridLeftEdge")
+        size = row(grid, "GridEndIndex") - row(grid, "GridStartIndex") + 1
         file = os.path.join(os.path.dirname(path), os.path.basename(grid["BaryonFileName"]))
         with open_file(file, "r") as opened:
             group = opened[f"Grid{int(grid['Grid']):08d}"]
             shape = tuple(int(n) for n in size[::-1])
             name = chosen(path, name, [each for each in group if group[each].shape == shape])
-            found.append((low, (numbers(grid, "GridRightEdge") - low) / size, group[name][()].T))
+            found.append((low, (row(grid, "GridRightEdge") - low) / size, group[name][()].T))
     steps: list[np.ndarray] = []
     for step in sorted((step for _, step, _ in found), key=lambda step: -float(step[0])):
         if not steps or step[0] < 0.75 * steps[-1][0]:

@@ -28,8 +28,10 @@ Numbers = Union[Sequence[float], np.ndarray]
 #: What load() reads, by the end of the name.
 PICTURES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm", ".pnm")
 SUFFIXES = [".nestgrid", ".vti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".raw"]
-SUFFIXES += [".vtu", ".pvtu", ".vthb", ".htg", ".hierarchy", ".athdf", ".dcm", ".dicom", *PICTURES]
+SUFFIXES += [".vtu", ".pvtu", ".vthb", ".htg", ".phtg", ".hierarchy", ".athdf", ".dcm", ".dicom"]
+SUFFIXES += PICTURES
 BOXES = (".vthb", ".hierarchy", ".athdf")
+TREES = (".htg", ".phtg")
 
 
 def _paths(value: Any) -> str | list[str]:
@@ -72,7 +74,8 @@ def load(
                 sample i of row j of slice k; or a folder of DICOM, its DICOMDIR or a slice of it;
                 or a picture; or a plotfile of AMReX, a folder with the file Header, which must stay
                 as it is; or other boxes of cells (Blocks): .vthb, Enzo's .hierarchy, .athdf of
-                Athena++, or HDF5 of Chombo or FLASH, of any name; or .htg, hyper trees (Octree).
+                Athena++, or HDF5 of Chombo or FLASH, of any name; or .htg, hyper trees (Octree), in
+                pieces .phtg.
                 Several plotfiles, or files of boxes or of hyper trees, of one format and with the
                 same cells, are Frames. What has one sample along an axis is a plane:
                 Volume.array[i, j]. Reading .vtu, .vti, .vthb, .htg, .nii and pictures needs VTK's
@@ -109,10 +112,10 @@ def load(
     given = [each for each, value in raw.items() if value is not None]
     if given and (suffix != ".raw" or plotfile):
         raise InvalidInput(f"load(): {given[0]} is for .raw files: '{first}' describes itself")
-    named = dicom or plotfile or boxes or suffix in (".nestgrid", ".htg", ".vti", ".vtu", ".pvtu")
+    named = dicom or plotfile or boxes or suffix in (".nestgrid", *TREES, ".vti", ".vtu", ".pvtu")
     if array and not named:
         raise InvalidInput(f"load(): '{first}' has one array, which has no name: leave out array")
-    if rule is not None and not (plotfile or boxes or suffix == ".htg"):
+    if rule is not None and not (plotfile or boxes or suffix in TREES):
         raise InvalidInput(f"load(): rule is for boxes and trees of cells, not '{first}'")
     choice = Choice(frame, component, magnitude)
     if (plotfile or suffix in (".nestgrid", ".raw")) and choice != Choice():
@@ -131,7 +134,7 @@ def load(
     _require_file(first)
     if boxes:
         return load_boxes(first, array, choice, rule or "smooth")[0]
-    if suffix == ".htg":
+    if suffix in TREES:
         return load_trees(first, array, choice, rule or "smooth")
     if suffix in (".vtu", ".pvtu"):
         return load_mesh(first, array, choice)
@@ -184,7 +187,7 @@ def _frames(
             f"load(): times has {len(given)}, not one for each of the {len(paths)} files"
         )
     for path, kind in zip(paths, kinds):
-        if not kind.plotfile and not kind.boxes and kind.suffix != ".htg":
+        if not kind.plotfile and not kind.boxes and kind.suffix not in TREES:
             raise InvalidInput(
                 "load(): several files are frames of plotfiles, of boxes of cells or of hyper "
                 f"trees, which '{path}' is not"
@@ -195,7 +198,7 @@ def _frames(
         return plotfiles([kind.plotfile for kind in kinds], array, rule, given)
     for path in paths:
         _require_file(path)
-    if kinds[0].suffix == ".htg":
+    if kinds[0].suffix in TREES:
         times_of_files = given or np.arange(float(len(paths))).tolist()
         return load_tree_frames(paths, array, choice, rule, times_of_files)
     loaded: list[tuple[Blocks, float | None]] = []

@@ -119,6 +119,7 @@ def load_boxes(path: str, array: str, choice: Choice, rule: Rule) -> tuple[Block
             ratio=place["ratio"],
             spacing=place["spacing"],
             origin=place["origin"],
+            axes=place.get("axes"),
             rule=rule,
             name=place["name"],
         )

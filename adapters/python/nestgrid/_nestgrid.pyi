@@ -69,6 +69,7 @@ def blocks(
     ratios: Sequence[int],
     spacing: ArrayLike,
     origin: ArrayLike,
+    axes: Sequence[int],
     rule: str,
 ) -> Source: ...
 def block_frames(
@@ -78,6 +79,7 @@ def block_frames(
             Sequence[int],
             ArrayLike,
             ArrayLike,
+            Sequence[int],
             str,
         ]
     ],

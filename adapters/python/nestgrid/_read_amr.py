@@ -79,7 +79,8 @@ def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
         else:
             boxes, place = read_hdf5(path, name)
     except (ValueError, KeyError, IndexError, AttributeError, OSError, TypeError) as error:
-        raise Refused(f"{path} cannot be read: {error}") from None
+        told_by_h5py = error.args[0] if isinstance(error, KeyError) and error.args else error
+        raise Refused(f"{path} cannot be read: {told_by_h5py}") from None
     single = all(array.dtype.newbyteorder("=") == np.float32 for _, _, array in boxes)
     kind = "float32" if single else "float64"
     dimension = len(boxes[0][1])

@@ -80,7 +80,7 @@ def boxes_of(amr: Any, name: str, component: int = 0) -> Boxes:
             boxes.append((level, lower, numbers.reshape(shape, order="F")))
         if level == len(spacings):
             raise ValueError(f"level {level} has no data")
-    if not boxes or along not in ([0, 1], [0, 1, 2]):
-        raise ValueError("the overlapping AMR does not lie in space, or in a plane of constant z")
-    place = {"ratio": ratios, "spacing": spacings[0].tolist(), "origin": origin[along].tolist()}
-    return boxes, place
+    if not boxes or len(along) < 2:
+        raise ValueError("the overlapping AMR does not lie in space, or in a plane across an axis")
+    place = {"ratio": ratios, "spacing": spacings[0].tolist(), "origin": origin.tolist()}
+    return boxes, place | {"axes": along}

@@ -12,11 +12,15 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Trees:
-    """What Octree() takes; values of the leaves are numbers_of_cells[index]."""
+    """What Octree() takes; values of the leaves are numbers_of_cells[index].
+
+    ghosts  which leaves are ghost cells: masked here, and leaves of other pieces
+    """
 
     leaves: np.ndarray
     index: np.ndarray
     masked: np.ndarray
+    ghosts: np.ndarray
     max_level: int
     factor: int
     coordinates: list[np.ndarray]
@@ -47,19 +51,20 @@ def trees_of(grid: Any) -> Trees:
     if not found:
         raise ValueError("it has no trees")
     leaves, index = (np.concatenate(each) for each in zip(*found))
-    masked = np.zeros(len(index), bool)
-    hidden = [_numbers(grid.GetMask())] if grid.HasMask() else []
+    masked, ghosts = np.zeros((2, len(index)), bool)
+    hidden = [(masked, _numbers(grid.GetMask()))] if grid.HasMask() else []
     if grid.GetGhostCells() is not None:
-        hidden.append(vtk_to_numpy(grid.GetGhostCells()))
-    for each in hidden:
+        hidden.append((ghosts, vtk_to_numpy(grid.GetGhostCells())))
+    for those, each in hidden:
         if len(each) <= index.max():
             raise ValueError("its mask or its ghost array has fewer entries than cells")
-        masked |= each[index] != 0
+        those |= each[index] != 0
+    masked |= ghosts
     axes = (grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates())
     if None in axes or [axis.GetNumberOfTuples() for axis in axes] != points.tolist():
         raise ValueError("its trees have another number of coordinates than points")
     coordinates = [vtk_to_numpy(axis).astype(float) for axis in axes]
-    return Trees(leaves, index, masked, max_level, factor, coordinates)
+    return Trees(leaves, index, masked, ghosts, max_level, factor, coordinates)
 
 
 def _numbers(bits: Any) -> np.ndarray:

@@ -110,8 +110,10 @@ CellRule rule_named(const std::string& name) {
 /// Level, lowest cell and array of each box, of one type.
 using Boxes = std::vector<std::tuple<int, std::vector<int>, py::array>>;
 
+/// \param origin by index, or in space where it has three numbers
+/// \param axes as many as there are indices
 BoxArrays box_arrays(const Boxes& boxes, const std::vector<int>& ratios, const Numbers& spacing,
-                     const Numbers& origin, const std::string& rule) {
+                     const Numbers& origin, const std::vector<int>& axes, const std::string& rule) {
     BoxArrays arrays;
     std::vector<std::shared_ptr<const void>> memory;
     const py::array& first = std::get<2>(boxes.front());
@@ -131,7 +133,12 @@ BoxArrays box_arrays(const Boxes& boxes, const std::vector<int>& ratios, const N
     }
     arrays.ratios = ratios;
     arrays.spacing = along_indices(spacing, indices, 1, "spacing");
-    arrays.origin = along_indices(origin, indices, 0, "origin");
+    const bool is_in_space = origin.size() == 3;
+    const Point begin = along_indices(origin, is_in_space ? 3 : indices, 0, "origin");
+    for (std::size_t d = 0; d < (is_in_space ? 3 : indices); ++d) {
+        arrays.origin[is_in_space ? d : static_cast<std::size_t>(axes[d])] = begin[d];
+    }
+    arrays.axes = axes;
     arrays.rule = rule_named(rule);
     arrays.memory = std::make_shared<const std::vector<std::shared_ptr<const void>>>(memory);
     return arrays;
@@ -139,14 +146,15 @@ BoxArrays box_arrays(const Boxes& boxes, const std::vector<int>& ratios, const N
 
 std::shared_ptr<Source> blocks_of(const Boxes& boxes, const std::vector<int>& ratios,
                                   const Numbers& spacing, const Numbers& origin,
-                                  const std::string& rule) {
-    const BoxArrays arrays = box_arrays(boxes, ratios, spacing, origin, rule);
+                                  const std::vector<int>& axes, const std::string& rule) {
+    const BoxArrays arrays = box_arrays(boxes, ratios, spacing, origin, axes, rule);
     return interruptible(1, [arrays](const Call& call) {
         return std::make_shared<Source>(make_blocks({arrays}, {0}, {"it"}, call)[0]);
     });
 }
 
-using BlockFrame = std::tuple<Boxes, std::vector<int>, Numbers, Numbers, std::string>;
+using BlockFrame =
+    std::tuple<Boxes, std::vector<int>, Numbers, Numbers, std::vector<int>, std::string>;
 
 /// \param names of the frames, for sentences
 std::shared_ptr<Frames> block_frames_of(const std::vector<BlockFrame>& frames,
@@ -280,7 +288,7 @@ void bind_sources(py::module_& m) {
         },
         py::arg("array"), py::arg("spacing"), py::arg("origin"), py::arg("direction"));
     m.def("blocks", &blocks_of, py::arg("boxes"), py::arg("ratios"), py::arg("spacing"),
-          py::arg("origin"), py::arg("rule"));
+          py::arg("origin"), py::arg("axes"), py::arg("rule"));
     m.def("block_frames", &block_frames_of, py::arg("frames"), py::arg("times"), py::arg("names"));
     m.def("octree", &octree_of, py::arg("leaves"), py::arg("values"), py::arg("times"),
           py::arg("masked"), py::arg("max_level"), py::arg("factor"), py::arg("coordinates"),

@@ -19,7 +19,7 @@ void require_one_grid(const Blocks<dim>& first, const BlockGrid<dim>& grid,
                       const Blocks<dim>& other, const std::string& first_name,
                       const std::string& name) {
     if (other.origin == first.origin && other.spacing == first.spacing &&
-        BlockGrid<dim>(other).epoch() == grid.epoch()) {
+        other.axes == first.axes && BlockGrid<dim>(other).epoch() == grid.epoch()) {
         return;
     }
     throw InvalidInput(name + " has another grid than " + first_name);
@@ -52,6 +52,7 @@ Blocks<dim> boxes_of(const BoxArrays& given) {
     Blocks<dim> blocks;
     blocks.origin = given.origin;
     blocks.spacing = given.spacing;
+    std::ranges::copy(given.axes, blocks.axes.begin());
     for (std::size_t l = 0; l < given.ratios.size(); ++l) {
         blocks.levels.emplace_back();
         blocks.levels[l].ratio.fill(given.ratios[l]);

@@ -112,7 +112,8 @@ struct BoxArrays {
     std::vector<BoxOfNumbers> boxes;
     std::vector<int> ratios;  ///< of each level to the one before; the first is not looked at
     Point spacing{1, 1, 1};   ///< extent of the cells of level 0
-    Point origin{0, 0, 0};    ///< where its first cell begins
+    Point origin{0, 0, 0};    ///< where its first cell begins, in space
+    std::vector<int> axes;    ///< of space along which the indices go, as Blocks has them
     CellRule rule = CellRule::smooth;
     std::shared_ptr<const void> memory;  ///< keeps the data alive
 };

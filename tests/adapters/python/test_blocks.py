@@ -4,6 +4,7 @@
 import math
 import os
 import pickle
+import re
 import sys
 from collections import Counter
 
@@ -88,6 +89,34 @@ def test_any_order_in_memory_and_types():
     np.testing.assert_allclose(single.isosurface(0).vertices, expected, atol=1e-5)
     whole = nestgrid.Blocks([(0, (0, 0), [[0, 1], [2, 3]])])
     assert whole.probe([[1, 1]])[0] == 1.5
+
+
+def test_masked_cells_have_no_number():
+    """As nan has none, in boxes and trees; a mask without an entry changes nothing."""
+    here = ball(*centres(0, (0, 0, 0), (8, 8, 8)))
+    hidden = here > 0.2
+    outside = [[0.95, 0.95, 0.95], [0.5, 0.5, 0.5]]
+    leaves = np.column_stack([*(np.indices((8, 8, 8)).reshape(3, -1)), np.full(512, 3)])
+    for array, finite in (
+        (np.ma.masked_array(here, hidden), [False, True]),
+        (np.ma.masked_array(here < 0, hidden), [False, True]),
+        (np.ma.masked_array(here, np.zeros_like(hidden)), [True, True]),
+    ):
+        boxes_field = nestgrid.Blocks([(0, (0, 0, 0), array)], spacing=[1 / N] * 3)
+        trees = nestgrid.Octree(leaves, array.ravel(), max_level=3, spacing=[1 / N] * 3)
+        for field in (boxes_field, trees):
+            assert np.isfinite(field.probe(outside)).ravel().tolist() == finite
+    with pytest.raises(nestgrid.InvalidInput, match=r"Blocks\(\): no cell has a value"):
+        nestgrid.Blocks([(0, (0, 0, 0), np.full((2, 2, 2), np.nan))])
+
+
+def test_numbers_that_lie_in_one_place():
+    """What NumPy repeats without a copy is as good as a copy."""
+    layer = np.arange(4.0)
+    repeated = nestgrid.Blocks([(0, (0, 0, 0), np.broadcast_to(layer, (4, 4, 4)))])
+    copied = nestgrid.Blocks([(0, (0, 0, 0), np.broadcast_to(layer, (4, 4, 4)).copy())])
+    np.testing.assert_array_equal(repeated.isosurface(1.7).vertices, copied.isosurface(1.7).vertices)
+    assert len(copied.isosurface(1.7).vertices) > 8
 
 
 def test_arrays_are_borrowed():
@@ -368,13 +397,14 @@ def test_balls_beside_vtk(tmp_path, rule):
         assert ours < (0.8 if rule == "means" else 1.1) * theirs, (what, ours, theirs)
 
 
-@pytest.mark.parametrize("factor", [2, 3])
-def test_trees_in_planes_across_axes(amr_files, factor):
-    """They lie where they are in space, and have the lines of the plane across z."""
+@pytest.mark.parametrize("kind", ["_2.htg", "_3.htg", ".vthb"])
+def test_planes_across_axes(amr_files, kind):
+    """Trees and boxes lie where they are in space, and have the lines of the plane across z."""
     lengths = []
     for axis, name in enumerate("xyz"):
-        field = nestgrid.load(amr_files / f"plane_across_{name}_{factor}.htg", "dist")
+        field = nestgrid.load(amr_files / f"plane_across_{name}{kind}", "dist")
         assert field.dimension == 2
+        field = pickle.loads(pickle.dumps(field))
         lines = field.isolines(0, 0)
         assert (lines.vertices[:, axis] == 0.3).all()
         lengths.append(sum(np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines))
@@ -418,6 +448,68 @@ def test_trees_of_all_kinds(amr_files, name):
     np.testing.assert_array_equal(
         pickle.loads(pickle.dumps(field)).isosurface(0).vertices, field.isosurface(0).vertices
     )
+
+
+@pytest.mark.parametrize("name", ["thirds", "uneven", "even", "plane_thirds", "plane_even"])
+def test_pieces_of_trees(amr_files, name):
+    """Those of several processes are one grid, also where levels change between them."""
+    whole = nestgrid.load(amr_files / f"{name}.htg", "dist")
+    pieces = nestgrid.load(amr_files / f"{name}.phtg", "dist")
+    points = np.random.default_rng(1).uniform(0, 1, (200, whole.dimension))
+    np.testing.assert_array_equal(pieces.probe(points), whole.probe(points))
+    assert np.isfinite(whole.probe(points)).all()
+    if whole.dimension == 3:
+        found, expected = (field.isosurface(0, 2e-3).report() for field in (pieces, whole))
+        assert found["open_edges"] == 0 and found["area"] == pytest.approx(expected["area"], rel=1e-12)
+    both = nestgrid.load(amr_files / f"{name}.phtg", "both", component=1)
+    np.testing.assert_allclose(both.probe(points).ravel(), points[:, 0], atol=1e-12)
+
+
+def test_pieces_that_do_not_fit(amr_files):
+    text = (amr_files / "even.phtg").read_text()
+
+    def refused(sentence, old, new, error=nestgrid.IoError):
+        (amr_files / "wrong.phtg").write_text(text.replace(old, new))
+        with pytest.raises(error, match=sentence):
+            nestgrid.load(amr_files / "wrong.phtg", "dist")
+
+    refused("its piece 'gone.htg' does not exist", "even_1", "gone")
+    refused("its piece 'even.phtg' does not end in .htg", "even_1.htg", "even.phtg")
+    refused("trees of a piece lie elsewhere than those of the first one", "even_1", "uneven_1")
+    refused("overlaps leaf", "even_1", "even_2", nestgrid.InvalidInput)
+
+
+@pytest.mark.parametrize("version, mode", [(1, "Ascii"), (1, "Appended"), (2, "Ascii"), (2, "Binary")])
+def test_arrays_of_several_numbers_in_trees(amr_files, version, mode):
+    """They have all their numbers, however a file has them, and are refused without a part."""
+    vtk_xml = pytest.importorskip("vtkmodules.vtkIOXML")
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+    reader = vtk_xml.vtkXMLHyperTreeGridReader()
+    reader.SetFileName(str(amr_files / "plane_thirds.htg"))
+    reader.Update()
+    grid = reader.GetOutputDataObject(0)
+    cells = grid.GetCellData()
+    plac = vtk_to_numpy(cells.GetArray("plac"))
+    both = numpy_to_vtk(np.stack([plac, 2 * plac, 3 * plac], axis=1), deep=True)
+    both.SetName("b: 3 %")
+    cells.AddArray(both)
+    path = amr_files / f"{mode}_{version}.htg"
+    writer = vtk_xml.vtkXMLHyperTreeGridWriter()
+    writer.SetDataSetMajorVersion(version)
+    getattr(writer, f"SetDataModeTo{mode}")()
+    writer.SetFileName(str(path))
+    writer.SetInputDataObject(grid)
+    assert writer.Write()
+    points = np.random.default_rng(1).uniform(0, 1, (50, 2))
+    for c in range(3):
+        field = nestgrid.load(path, "b: 3 %", component=c)
+        np.testing.assert_allclose(field.probe(points), (c + 1) * points[:, 0], atol=1e-12)
+    if (version, mode) == (2, "Ascii"):
+        path.write_bytes(re.sub(rb"[-0-9. ]+\n( *<InformationKey)", rb"\1", path.read_bytes()))
+        assert nestgrid.load(path, "plac").probe([[0.5, 0.5]]) == pytest.approx(0.5)
+        with pytest.raises(nestgrid.IoError, match="fewer numbers than the trees have cells"):
+            nestgrid.load(path, "b: 3 %", component=1)
 
 
 @pytest.mark.parametrize("name", ["trees.htg", "thirds.htg", "uneven.htg"])
@@ -549,6 +641,66 @@ def test_formats_of_codes_in_the_plane(amr_files, name):
     np.testing.assert_allclose(field.probe(points), points[:, 0], atol=1e-12)
 
 
+def edited(amr_files, name, edit):
+    """A file of another name with changes."""
+    h5py = pytest.importorskip("h5py")
+    path = amr_files / f"edited_{name}"
+    path.write_bytes((amr_files / name).read_bytes())
+    with h5py.File(path, "a") as file:
+        edit(file)
+    return path
+
+
+def test_formats_of_codes_as_others_write_them(amr_files):
+    """PLUTO says where cells are; texts have their lengths beside them, vectors names; levels may
+    be empty."""
+
+    def pluto(file, **more):
+        for level in range(3):
+            place = {"domBeg1": -1.0, "domBeg2": 3.0, "domBeg3": 0.5, "g_x2stretch": 2.0, "geometry": 1}
+            file[f"level_{level}"].attrs.update(place | more)
+
+    def long_names(file):
+        file.attrs["num_levels"] = np.int32(4)
+        file["level_3/boxes"] = np.zeros(0, file["level_0/boxes"].dtype)
+        for i, name in enumerate(["of any length \u03c1", "dist"]):
+            file.attrs[f"component_{i}"] = name
+        for level in range(3):
+            step = tuple(file[f"level_{level}"].attrs["dx"] * np.array([1, 2, 1]))
+            file[f"level_{level}"].attrs["vec_dx"] = np.array(step, [(x, "f8") for x in "xyz"])
+
+    def athena_texts(file):
+        for each in ("DatasetNames", "VariableNames"):
+            file.attrs[each] = [name.decode() for name in file.attrs[each]]
+        file.attrs["Coordinates"] = "cartesian"
+
+    load = nestgrid.load
+    points = np.random.default_rng(1).uniform(0, 1, (50, 3))
+    here = points * [1, 2, 1]
+    expected = load(amr_files / "chombo.hdf5", "dist").probe(points)
+    field = load(edited(amr_files, "chombo.hdf5", pluto), "dist")
+    np.testing.assert_allclose(field.probe(here + [-1, 3, 0.5]), expected, atol=1e-12)
+    field = load(edited(amr_files, "chombo.hdf5", long_names), "of any length \u03c1")
+    np.testing.assert_allclose(field.probe(here), expected, atol=1e-12)
+    field = load(edited(amr_files, "athena.athdf", athena_texts), "dist")
+    np.testing.assert_allclose(field.probe(points), expected, atol=1e-12)
+
+    def refused(name, sentence, edit):
+        with pytest.raises(nestgrid.IoError, match=sentence):
+            load(edited(amr_files, name, edit), "dist")
+
+    curved = "curved or logarithmic coordinates, not cartesian"
+    refused("chombo.hdf5", curved, lambda file: pluto(file, geometry=4))
+    refused("chombo.hdf5", curved, lambda file: pluto(file, logr=1))
+    dimension = lambda file: file["Chombo_global"].attrs.update(SpaceDim=1)  # noqa: E731
+    refused("chombo.hdf5", "has 1 dimensions, not 2 or 3", dimension)
+    size = lambda *n: lambda file: file.attrs.update(MeshBlockSize=np.array(n))  # noqa: E731
+    refused("athena.athdf", "one cell thick along x or y", size(8, 1, 8))
+    refused("athena.athdf", "has 1 dimension, not 2 or 3", size(8, 1, 1))
+    names = lambda file: file.attrs.update(VariableNames=np.array([b"dist"]))  # noqa: E731
+    refused("athena.athdf", "a variable has no name", names)
+
+
 def test_refusals_of_formats_of_codes(amr_files):
     load = nestgrid.load
     for name in FORMATS:
@@ -562,8 +714,8 @@ def test_refusals_of_formats_of_codes(amr_files):
     np.testing.assert_allclose(second.range, [0, 1], atol=1e-12)
     with pytest.raises(nestgrid.InvalidInput, match="component chooses nothing"):
         load(amr_files / "chombo.hdf5", "dist", component=0)
-    with pytest.raises(nestgrid.IoError, match="does not lie in space, or in a plane of constant z"):
-        load(amr_files / "plane_across_x.vthb", "dist")
+    with pytest.raises(nestgrid.InvalidInput, match="across_y.vthb' has another grid than"):
+        load([amr_files / "plane_across_x.vthb", amr_files / "plane_across_y.vthb"], "dist")
     with pytest.raises(nestgrid.IoError, match="has cylindrical coordinates, not cartesian ones"):
         load(amr_files / "round_hdf5_plt_cnt_0000", "dist")
     (amr_files / "cut.athdf").write_bytes((amr_files / "athena.athdf").read_bytes()[:-9000])

@@ -101,7 +101,8 @@ void require_one_grid(const KeptBlocks<dim>& kept, const Paths& paths) {
         }
         if (grid_of<dim>(other, paths[i]).epoch() != kept.grid.epoch() ||
             other.blocks.origin != first.blocks.origin ||
-            other.blocks.spacing != first.blocks.spacing) {
+            other.blocks.spacing != first.blocks.spacing ||
+            other.blocks.axes != first.blocks.axes) {
             refuse("another grid than the first input");
         }
         if (other.is_double != first.is_double) {
@@ -230,7 +231,11 @@ void report_blocks(const BlockFile& file, const fs::path& path, Report& report) 
     report.add("leaf_elements", grid.leaf_count());
     report.add("nodes", grid.used_node_count());
     report.add("coarse_elements", std::uint64_t{grid.coarse_count()});
-    report.add("origin", std::vector<double>(origin.begin(), origin.begin() + dim));
+    std::vector<double> begin;
+    for (const int axis : blocks_in<dim>(file).axes) {
+        begin.push_back(origin[static_cast<std::size_t>(axis)]);
+    }
+    report.add("origin", begin);
     report.add("spacing", std::vector<double>(spacing.begin(), spacing.begin() + dim));
     report_levels(grid, file, report);
     report_fields(file, grid, report);

@@ -35,7 +35,7 @@ struct BlockFile {
     bool is_double = true;       ///< numbers are floats otherwise
     std::optional<double> time;  ///< where the file tells
     std::vector<Field> fields;
-    nestgrid::Blocks<3> blocks;  ///< in the plane the third direction means nothing
+    nestgrid::Blocks<3> blocks;  ///< in the plane the third index means nothing
     std::function<BoxNumbers(std::size_t field, int component)> numbers;
 };
 
@@ -48,6 +48,7 @@ nestgrid::Blocks<dim> blocks_in(const BlockFile& file) {
     nestgrid::Blocks<dim> blocks;
     blocks.origin = file.blocks.origin;
     blocks.spacing = file.blocks.spacing;
+    std::copy_n(file.blocks.axes.begin(), dim, blocks.axes.begin());
     for (const nestgrid::BlockLevel<3>& from : file.blocks.levels) {
         nestgrid::BlockLevel<dim>& level = blocks.levels.emplace_back();
         std::copy_n(from.ratio.begin(), dim, level.ratio.begin());
@@ -66,6 +67,7 @@ nestgrid::Blocks<3> blocks_in_space(const nestgrid::Blocks<dim>& blocks) {
     nestgrid::Blocks<3> result;
     result.origin = blocks.origin;
     result.spacing = blocks.spacing;
+    std::copy_n(blocks.axes.begin(), dim, result.axes.begin());
     for (const nestgrid::BlockLevel<dim>& from : blocks.levels) {
         nestgrid::BlockLevel<3>& level = result.levels.emplace_back();
         level.ratio.fill(1);

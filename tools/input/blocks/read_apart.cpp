@@ -27,6 +27,7 @@ struct Head {
     double time;
     nestgrid::Point origin;
     nestgrid::Point spacing;
+    std::array<int, 3> axes;
 };
 struct LevelHead {
     std::array<int, 3> ratio;
@@ -69,7 +70,8 @@ void put(const BlockFile& file, Parcel& out) {
         names += field.name;
     }
     const Head head{file.dimension,        file.is_double,     file.time.has_value(),
-                    file.time.value_or(0), file.blocks.origin, file.blocks.spacing};
+                    file.time.value_or(0), file.blocks.origin, file.blocks.spacing,
+                    file.blocks.axes};
     out.put(std::span<const Head>(&head, 1));
     out.put(std::span<const LevelHead>(levels));
     out.put(std::span<const Box>(boxes));
@@ -85,6 +87,7 @@ BlockFile file_in(const Parcel& parcel) {
     if (head.has_time) file.time = head.time;
     file.blocks.origin = head.origin;
     file.blocks.spacing = head.spacing;
+    file.blocks.axes = head.axes;
     std::span<const Box> boxes = parcel.block<Box>(Part::boxes);
     for (const LevelHead& from : parcel.block<LevelHead>(Part::levels)) {
         nestgrid::BlockLevel<3>& level = file.blocks.levels.emplace_back();

@@ -112,13 +112,9 @@ std::pair<std::vector<BlockFile::Field>, bool> fields_in(vtkCellData& cells) {
 
 BlockFile blocks_of_vtk(const vtkSmartPointer<vtkOverlappingAMR>& amr,
                         std::vector<BlockFile::Field> fields, bool is_double) {
-    const int directions = amr->GetGridDescription();
-    if (directions != VTK_XYZ_GRID && directions != VTK_XY_PLANE) {
-        throw InvalidInput("it does not lie in space, or in a plane of constant z");
-    }
     BlockFile file;
     file.is_double = is_double;
-    file.dimension = amr->GetGridDescription() == VTK_XY_PLANE ? 2 : 3;
+    file.dimension = amr->GetGridDescription() == VTK_XYZ_GRID ? 3 : 2;
     file.time = time_in(*amr);
     file.blocks = file.dimension == 2 ? boxes_in<2>(*amr) : boxes_in<3>(*amr);
     file.fields = std::move(fields);

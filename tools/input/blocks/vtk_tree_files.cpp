@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hyper tree grids of VTK (.htg), which VTK reads in child processes. Where they are boxes of cells
-// they are drawn as such, otherwise as trees.
+// Hyper tree grids of VTK (.htg, .phtg), which VTK reads in child processes. Where they are boxes
+// of cells they are drawn as such, otherwise as trees.
 #include <limits>
 #include <tuple>
 
 #include <vtkCellData.h>
 #include <vtkNew.h>
+#include <vtkXMLDataElement.h>
 #include <vtkXMLHyperTreeGridReader.h>
 
 #include "input/blocks/read_blocks.hpp"
@@ -21,6 +22,38 @@ namespace {
 
 using nestgrid::InvalidInput;
 namespace fs = std::filesystem;
+
+/// VTK's reader, with all numbers of arrays that have several for each cell. Where an array is in
+/// one piece, in files of version 2, VTK asks for it tree by tree, and 9.1 for as many numbers as
+/// there are cells: here the first tree gets all of it.
+class TreeReader : public vtkXMLHyperTreeGridReader {
+public:
+    vtkTypeMacro(TreeReader, vtkXMLHyperTreeGridReader) static TreeReader* New() {
+        VTK_STANDARD_NEW_BODY(TreeReader);
+    }
+
+    /// Takes all numbers of arrays away that a file has in part: what VTK leaves unset is no value.
+    void clear_short_arrays() const {
+        for (vtkAbstractArray* const each : short_) each->SetNumberOfTuples(0);
+    }
+
+protected:
+    int ReadArrayValues(vtkXMLDataElement* element, vtkIdType to, vtkAbstractArray* array,
+                        vtkIdType from, vtkIdType count, FieldType type) override {
+        const bool is_cells = element->GetParent()->GetName() == std::string_view("CellData");
+        const bool is_whole = is_cells && type == OTHER;
+        if (is_whole && from > 0) return 1;
+        if (is_whole) count = array->GetNumberOfValues();
+        const int is_read =
+            vtkXMLHyperTreeGridReader::ReadArrayValues(element, to, array, from, count, type);
+        if (!is_cells || is_read != 0) return is_read;
+        short_.push_back(array);
+        return 1;
+    }
+
+private:
+    std::vector<vtkSmartPointer<vtkAbstractArray>> short_;
+};
 
 template <class Real>
 BoxNumbers numbers_of(const TreeBoxes& trees, vtkDataArray& data, int component) {
@@ -78,7 +111,7 @@ BlockFile open_htg(const fs::path& path) {
 double seconds_for(const Input& input, const fs::path& path) {
     require_file(path);
     const Format* const format = format_of(path);
-    if (format == nullptr || format != format_of("x.htg")) {
+    if (format == nullptr || (format != format_of("x.htg") && format != format_of("x.phtg"))) {
         throw InvalidInput("'" + path.string() + "' is no file of the format of the first one");
     }
     return input.read_limit > 0 ? input.read_limit : reading_time(bytes_to_read(path, *format));
@@ -108,17 +141,27 @@ const RegisteredFormat htg({.name = "VTK hyper tree grid",
                             .read_field = read_trees,
                             .describe = describe_htg});
 
+const RegisteredFormat phtg({.name = "VTK hyper tree grid in pieces",
+                             .endings = {".phtg"},
+                             .holds = "such trees in files of several processes",
+                             .options = {"--array", "--cells", "--component", "--read-limit"},
+                             .reads_beside = true,
+                             .read_field = read_trees,
+                             .describe = describe_htg});
+
 }  // namespace
 
 vtkSmartPointer<vtkHyperTreeGrid> read_htg(const fs::path& path) {
+    if (ending_of(path) == ".phtg") return read_phtg(path);
     check_xml_end(path);
     return read_quietly<vtkHyperTreeGrid>([&] {
-        const vtkNew<vtkXMLHyperTreeGridReader> reader;
+        const vtkNew<TreeReader> reader;
         if (reader->CanReadFile(path.c_str()) == 0) {
             throw InvalidInput("it is no file of VTK's hyper tree grids");
         }
         reader->SetFileName(path.c_str());
         reader->Update();
+        reader->clear_short_arrays();
         return vtkSmartPointer<vtkDataObject>(reader->GetOutputDataObject(0));
     });
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hyper tree grids of VTK (.htg) that are no boxes of cells: divided by three, with trees of
+// Hyper tree grids of VTK (.htg, .phtg) that are no boxes of cells: divided by three, with trees of
 // several sizes, or in planes across x or y. A child process reads the file; the trees pass through
 // a parcel cell by cell, depth first, and become a hyper tree grid again.
 #pragma once
@@ -16,6 +16,9 @@
 /// Reads a file of hyper trees, and says what is wrong with it.
 /// \throw nestgrid::InvalidInput
 vtkSmartPointer<vtkHyperTreeGrid> read_htg(const std::filesystem::path& path);
+/// Reads the pieces of several processes as one grid. Ghost cells are trees of other pieces.
+/// \throw nestgrid::InvalidInput also where pieces do not fit each other
+vtkSmartPointer<vtkHyperTreeGrid> read_phtg(const std::filesystem::path& path);
 
 /// What a child tells of a file and of one field, in this order of blocks.
 struct TreePart {

@@ -38,14 +38,13 @@ public:
         const std::string place = lines == 0 ? "" : ", line " + std::to_string(1 + before);
         throw IoError(name_ + place + ": " + what);
     }
-    /// The rest of the line.
+    /// The rest of the line, without blanks at its end.
     std::string_view line(const char* what) {
         if (left() == 0) fail(std::string("the file ends before ") + what);
         const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-        std::string_view rest = text_.substr(at_, end - at_);
+        const std::string_view rest = text_.substr(at_, end - at_);
         at_ = std::min(end + 1, text_.size());
-        if (rest.ends_with('\r')) rest.remove_suffix(1);
-        return rest;
+        return rest.substr(0, rest.find_last_not_of(" \t\r") + 1);
     }
     std::int64_t integer(const char* what, std::int64_t least, std::int64_t most) {
         const auto value = number<std::int64_t>(what);

@@ -33,13 +33,27 @@ struct BlockLevel {
     std::array<int, static_cast<std::size_t>(dim)> ratio{};
 };
 
+namespace detail {
+
+template <std::size_t dim>
+constexpr std::array<int, dim> first_axes() {
+    std::array<int, dim> axes{};
+    for (std::size_t d = 0; d < dim; ++d) axes[d] = static_cast<int>(d);
+    return axes;
+}
+
+}  // namespace detail
+
 /// Level 0 fills a box. Each further level lies within the boxes of the one before, whose cells it
 /// replaces.
 template <int dim>
 struct Blocks {
     std::vector<BlockLevel<dim>> levels;
-    Point origin{0, 0, 0};   ///< where the first cell of level 0 begins
-    Point spacing{1, 1, 1};  ///< extent of the cells of level 0
+    Point origin{0, 0, 0};   ///< where the first cell of level 0 begins, in space
+    Point spacing{1, 1, 1};  ///< extent of the cells of level 0, by index
+    /// The axes of space along which the indices go, ascending: {1, 2} is a plane across x.
+    std::array<int, static_cast<std::size_t>(dim)> axes =
+        detail::first_axes<static_cast<std::size_t>(dim)>();
 };
 
 namespace detail {

@@ -41,9 +41,14 @@ public:
     /// \throw InvalidInput unless the geometry is finite and there are levels
     explicit BlockChecker(const Blocks<dim>& blocks) : blocks_{&blocks} {
         if (blocks.levels.empty()) throw InvalidInput("there are no levels of boxes");
+        if (!std::ranges::all_of(blocks.origin, [](double x) { return std::isfinite(x); })) {
+            throw InvalidInput("the origin of the boxes is not finite");
+        }
         for (std::size_t d = 0; d < size_; ++d) {
-            if (!std::isfinite(blocks.origin[d])) {
-                throw InvalidInput("the origin of the boxes is not finite");
+            const int before = d == 0 ? -1 : blocks.axes[d - 1];
+            if (blocks.axes[d] <= before || blocks.axes[d] > 2) {
+                throw InvalidInput("the axes of the boxes are " + text_of_place(blocks.axes) +
+                                   ", not ascending from 0 to 2");
             }
             if (!std::isfinite(blocks.spacing[d]) || blocks.spacing[d] <= 0) {
                 throw InvalidInput("the spacing of level 0 is " +

@@ -176,7 +176,9 @@ Point BlockCells<dim, Real>::gradient(const Place& node, const Around& around) c
     }
     const auto slope =
         detail::of_one_size(around) ? even_slope(around) : Lattice(*this, node, around).slope();
-    for (std::size_t d = 0; d < size_; ++d) sum[d] = slope[d] / grid.finest_spacing()[d];
+    for (std::size_t d = 0; d < size_; ++d) {
+        sum[grid.axis(d)] = slope[d] / grid.finest_spacing()[d];
+    }
     return sum;
 }
 

@@ -112,8 +112,10 @@ public:
     Place box_size(std::size_t level, std::size_t box) const;
     /// How many cells there are in each direction, were all as fine as the last level.
     Place finest_size() const;
-    /// The extent of the cells of the last level.
+    /// The extent of the cells of the last level, by index.
     Point finest_spacing() const { return (1.0 / extent(0)) * spacing_; }
+    /// The axis of space along which index d goes.
+    std::size_t axis(std::size_t d) const { return axes_[d]; }
     /// The node that has a key.
     Node place(NodeKey key) const;
     /// The place of a new node in its element, in halves of an edge.
@@ -177,6 +179,7 @@ private:
     Place roots_{};
     Point origin_{};
     Point spacing_{};
+    std::array<std::size_t, size_> axes_{};
     std::array<Place, static_cast<std::size_t>(max_new_nodes)> halves_{};  // to the new nodes
     std::uint64_t node_count_ = 0;
     std::uint64_t epoch_ = 0;

@@ -13,6 +13,8 @@ template <int dim>
 BlockGrid<dim>::BlockGrid(const Blocks<dim>& blocks)
     : origin_{blocks.origin}, spacing_{blocks.spacing} {
     detail::BlockChecker<dim> checker(blocks);
+    std::ranges::transform(blocks.axes, axes_.begin(),
+                           [](int axis) { return static_cast<std::size_t>(axis); });
     unsigned steps = 0;
     for (std::size_t l = 0; l < blocks.levels.size(); ++l) {
         if (l > 0) steps += std::min(checker.steps(l), 31U);
@@ -204,7 +206,7 @@ void BlockGrid<dim>::corner_positions(const Element& e, std::span<Point> out) co
         out[k] = origin_;
         for (std::size_t d = 0; d < size_; ++d) {
             const auto at = static_cast<double>(e.cell[d] + static_cast<std::int32_t>(k >> d & 1U));
-            out[k][d] += (at * size) * spacing_[d];
+            out[k][axes_[d]] += (at * size) * spacing_[d];
         }
     }
 }

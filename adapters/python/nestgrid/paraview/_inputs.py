@@ -25,7 +25,7 @@ def field_of(data: vtkDataObject, array: vtkDataArray | None) -> nestgrid.Field:
     """The field of image data or of an unstructured grid at points, or of a hyper tree grid or an
     overlapping AMR in cells. Image data and AMR are not copied.
 
-    What has one sample along an axis is a field in a plane, as boxes of constant z are.
+    What has one sample along an axis, or boxes with no cells along it, is a field in a plane.
 
     Raises InvalidInput where the data are not of dimension 2 or 3 or the array does not fit.
     """

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 
 #include <vtkAMRBox.h>
 #include <vtkAOSDataArrayTemplate.h>
@@ -32,6 +33,22 @@ inline std::string text_of_block(std::size_t level, std::size_t block) {
 
 inline vtkUniformGrid* amr_block(vtkOverlappingAMR& amr, std::size_t level, std::size_t block) {
     return amr.GetDataSet(static_cast<unsigned>(level), static_cast<unsigned>(block));
+}
+
+/// The axes along which the cells go.
+/// \throw InvalidInput for another dimension
+template <int dim>
+std::array<int, static_cast<std::size_t>(dim)> amr_axes(vtkOverlappingAMR& amr) {
+    const int grid = amr.GetGridDescription();
+    if constexpr (dim == 3) {
+        if (grid == VTK_XYZ_GRID) return {0, 1, 2};
+        throw InvalidInput("the overlapping AMR is not of dimension 3");
+    } else {
+        if (grid == VTK_XY_PLANE) return {0, 1};
+        if (grid == VTK_XZ_PLANE) return {0, 2};
+        if (grid == VTK_YZ_PLANE) return {1, 2};
+        throw InvalidInput("the overlapping AMR does not lie in a plane across an axis");
+    }
 }
 
 /// How many levels have data.
@@ -57,13 +74,15 @@ inline std::size_t amr_levels_with_data(vtkOverlappingAMR& amr) {
 
 /// \throw InvalidInput where a block lies elsewhere than its box, or has cells of another size, as
 /// readers leave them that take a block for one of another level
-inline void require_place(vtkOverlappingAMR& amr, std::size_t level, std::size_t block, int dim) {
+inline void require_place(vtkOverlappingAMR& amr, std::size_t level, std::size_t block,
+                          std::span<const int> axes) {
     vtkUniformGrid* const grid = amr_block(amr, level, block);
     const vtkAMRBox& box =
         amr.GetAMRBox(static_cast<unsigned>(level), static_cast<unsigned>(block));
     std::array<double, 3> spacing{};
     amr.GetSpacing(static_cast<unsigned>(level), spacing.data());
-    for (std::size_t d = 0; d < static_cast<std::size_t>(dim); ++d) {
+    for (const int axis : axes) {
+        const auto d = static_cast<std::size_t>(axis);
         const double begin = amr.GetOrigin()[d] + box.GetLoCorner()[d] * spacing[d];
         const bool is_there = std::abs(grid->GetOrigin()[d] - begin) <= 1e-3 * spacing[d] &&
                               std::abs(grid->GetSpacing()[d] - spacing[d]) <= 1e-3 * spacing[d];
@@ -85,14 +104,17 @@ inline int whole_ratio(double coarse, double fine, std::size_t level) {
     return static_cast<int>(std::lround(ratio));
 }
 
-/// The box of a block in its first dim directions.
+/// The box of a block along the axes of its cells.
 template <int dim>
 BlockBox<dim> amr_box(vtkOverlappingAMR& amr, std::size_t level, std::size_t block) {
     const vtkAMRBox& from =
         amr.GetAMRBox(static_cast<unsigned>(level), static_cast<unsigned>(block));
     BlockBox<dim> box;
-    std::copy_n(from.GetLoCorner(), dim, box.lower.begin());
-    std::copy_n(from.GetHiCorner(), dim, box.upper.begin());
+    const auto axes = amr_axes<dim>(amr);
+    for (std::size_t d = 0; d < axes.size(); ++d) {
+        box.lower[d] = from.GetLoCorner()[axes[d]];
+        box.upper[d] = from.GetHiCorner()[axes[d]];
+    }
     return box;
 }
 
@@ -122,11 +144,13 @@ BlockArray<dim, Real> amr_array(vtkOverlappingAMR& amr, std::size_t level, std::
     std::ptrdiff_t stride = std::ptrdiff_t{components} * static_cast<std::ptrdiff_t>(sizeof(Real));
     std::array<int, 3> points{};
     grid->GetDimensions(points.data());
+    const auto axes = amr_axes<dim>(amr);
     for (std::size_t d = 0; d < array.stride.size(); ++d) {
         const int cells = box.upper[d] - box.lower[d] + 1;
-        if (points[d] - 1 != cells) {
-            refuse(std::to_string(points[d] - 1) + " cells in direction " + std::to_string(d) +
-                   ", but its box " + std::to_string(cells));
+        const int cells_of_block = points[static_cast<std::size_t>(axes[d])] - 1;
+        if (cells_of_block != cells) {
+            refuse(std::to_string(cells_of_block) + " cells in direction " +
+                   std::to_string(axes[d]) + ", but its box " + std::to_string(cells));
         }
         array.stride[d] = stride;
         stride *= cells;
@@ -144,39 +168,36 @@ BlockArray<dim, Real> amr_array(vtkOverlappingAMR& amr, std::size_t level, std::
 ///
 /// \throw InvalidInput where there are none, where a level has data in part, where a block does not
 /// lie in its box, where the ratio of two levels is no whole number, and where the grid does not
-/// lie in space (dim = 3), or in a plane of constant z (dim = 2); BlockGrid checks the boxes
+/// lie in space (dim = 3), or in a plane across an axis (dim = 2); BlockGrid checks the boxes
 template <int dim>
 Blocks<dim> vtk_blocks(vtkOverlappingAMR& amr) {
     const std::size_t levels = detail::amr_levels_with_data(amr);
     if (levels == 0) throw InvalidInput("the overlapping AMR has no data");
-    if (amr.GetGridDescription() != (dim == 3 ? VTK_XYZ_GRID : VTK_XY_PLANE)) {
-        throw InvalidInput(dim == 3 ? "the overlapping AMR is not of dimension 3"
-                                    : "the overlapping AMR does not lie in a plane of constant z");
-    }
     Blocks<dim> blocks;
+    blocks.axes = detail::amr_axes<dim>(amr);
     std::array<double, 3> coarse{};
     for (std::size_t l = 0; l < levels; ++l) {
         BlockLevel<dim>& level = blocks.levels.emplace_back();
         for (std::size_t b = 0; b < amr.GetNumberOfDataSets(static_cast<unsigned>(l)); ++b) {
-            detail::require_place(amr, l, b, dim);
+            detail::require_place(amr, l, b, blocks.axes);
             level.boxes.push_back(detail::amr_box<dim>(amr, l, b));
         }
         std::array<double, 3> spacing{};
         amr.GetSpacing(static_cast<unsigned>(l), spacing.data());
         for (std::size_t d = 0; d < level.ratio.size(); ++d) {
-            if (l > 0) level.ratio[d] = detail::whole_ratio(coarse[d], spacing[d], l);
-            if (l == 0) blocks.spacing[d] = spacing[d];
+            const auto axis = static_cast<std::size_t>(blocks.axes[d]);
+            if (l > 0) level.ratio[d] = detail::whole_ratio(coarse[axis], spacing[axis], l);
+            if (l == 0) blocks.spacing[d] = spacing[axis];
         }
         coarse = spacing;
     }
-    for (std::size_t d = 0; d < 3; ++d) {
-        blocks.origin[d] = amr.GetOrigin()[d];
-        if (d >= static_cast<std::size_t>(dim)) continue;
+    std::copy_n(amr.GetOrigin(), 3, blocks.origin.begin());
+    for (std::size_t d = 0; d < blocks.axes.size(); ++d) {
         int first = blocks.levels[0].boxes[0].lower[d];
         for (const BlockBox<dim>& box : blocks.levels[0].boxes) {
             first = std::min(first, box.lower[d]);
         }
-        blocks.origin[d] += first * blocks.spacing[d];
+        blocks.origin[static_cast<std::size_t>(blocks.axes[d])] += first * blocks.spacing[d];
     }
     return blocks;
 }

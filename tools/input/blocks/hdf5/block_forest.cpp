@@ -75,7 +75,13 @@ BlockFile forest_file(std::shared_ptr<const Hdf5> opened, BlockForest forest,
     for (const int n : forest.size) {
         if (n < 1 || n > 1 << 12) throw InvalidInput("its blocks have no cells, or too many");
     }
-    if (forest.size[1] == 1) throw InvalidInput("it has 1 dimension, not 2 or 3");
+    if (forest.size[1] == 1 && forest.size[2] == 1) {
+        throw InvalidInput("it has 1 dimension, not 2 or 3");
+    }
+    if (forest.size[0] == 1 || forest.size[1] == 1) {
+        throw InvalidInput(
+            "its blocks are one cell thick along x or y: of slices, those across z are read");
+    }
     if (forest.levels.empty() || forest.places.size() != 3 * forest.levels.size()) {
         throw InvalidInput("it has not one level and one place for each block");
     }

@@ -42,8 +42,35 @@ std::vector<Box> boxes_of(const Hdf5& group, std::size_t dim) {
     return boxes;
 }
 
-std::vector<double> spacing_of(const Hdf5& group) {
-    return group.numbers(group.has_attribute("vec_dx") ? "vec_dx" : "dx");
+/// PLUTO says where the domain begins and how long cells are, beside their extent along x.
+double number_or(const Hdf5& level, const std::string& attribute, double otherwise) {
+    return level.has_attribute(attribute) ? level.number(attribute) : otherwise;
+}
+
+/// \throw InvalidInput for PLUTO's curved or logarithmic coordinates
+void require_cartesian(const Hdf5& level) {
+    const bool is_pluto = level.has_attribute("domBeg1");
+    if (is_pluto && number_or(level, "geometry", 1) != 1) {
+        throw InvalidInput("its coordinates are curved, not cartesian");
+    }
+    if (is_pluto && number_or(level, "logr", 0) != 0) {
+        throw InvalidInput("its cells are not of one size: they grow with the radius");
+    }
+}
+
+void place_cells(const Hdf5& level, BlockFile& file) {
+    const bool is_vector = level.has_attribute("vec_dx");
+    const std::vector<double> spacing = level.numbers(is_vector ? "vec_dx" : "dx");
+    const std::vector<Box>& boxes = file.blocks.levels[0].boxes;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(file.dimension); ++d) {
+        const std::string axis = std::to_string(d + 1);
+        const double stretch = number_or(level, "g_x" + axis + "stretch", 1);
+        int lower = boxes[0].lower[d];
+        for (const Box& box : boxes) lower = std::min(lower, box.lower[d]);
+        file.blocks.spacing[d] = stretch * in_direction(spacing, d);
+        file.blocks.origin[d] =
+            number_or(level, "domBeg" + axis, 0) + lower * file.blocks.spacing[d];
+    }
 }
 
 BlockFile open_chombo(const fs::path& path) {
@@ -64,18 +91,18 @@ BlockFile open_chombo(const fs::path& path) {
             for (std::size_t d = 0; d < dim; ++d) level.ratio[d] = in_direction(ratio, d);
         }
         level.boxes = boxes_of(group, dim);
+        if (level.boxes.empty() && l > 0) {  // levels that the code may still make
+            file.blocks.levels.pop_back();
+            break;
+        }
         if (level.boxes.empty()) throw InvalidInput(group_of(l) + " has no boxes");
     }
     const Hdf5 coarse = opened->at(group_of(0));
+    require_cartesian(coarse);
     const bool tells_time = opened->has_attribute("time") || coarse.has_attribute("time");
     if (tells_time) file.time = (opened->has_attribute("time") ? *opened : coarse).number("time");
     file.is_double = coarse.at("data:datatype=0").is_double();
-    for (std::size_t d = 0; d < dim; ++d) {
-        file.blocks.spacing[d] = in_direction(spacing_of(coarse), d);
-        int lower = file.blocks.levels[0].boxes[0].lower[d];
-        for (const Box& box : file.blocks.levels[0].boxes) lower = std::min(lower, box.lower[d]);
-        file.blocks.origin[d] = lower * file.blocks.spacing[d];
-    }
+    place_cells(coarse, file);
     file.numbers = [opened, fields, dim, is_double = file.is_double, blocks = file.blocks](
                        std::size_t field, int) {
         const auto memory = std::make_shared<std::vector<std::vector<std::byte>>>();
