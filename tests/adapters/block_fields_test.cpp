@@ -171,7 +171,8 @@ TEST(BlockFields, HaveOneGradientAtANode) {
     expect_gradients_by_key<3>();
 }
 
-/// In a plane across an axis, places and gradients are those of the plane across z along other axes.
+/// In a plane across an axis, places and gradients are those of the plane across z along other
+/// axes.
 TEST(BlockFields, LieInPlanesAcrossAnyAxis) {
     const Blocks<2> flat = random_blocks<2>({.seed = 3, .side = 4});
     std::mt19937 random(3);

@@ -41,8 +41,8 @@ public:
     /// \throw InvalidInput unless the geometry is finite and there are levels
     explicit BlockChecker(const Blocks<dim>& blocks) : blocks_{&blocks} {
         if (blocks.levels.empty()) throw InvalidInput("there are no levels of boxes");
-        if (!std::ranges::all_of(blocks.origin, [](double x) { return std::isfinite(x); })) {
-            throw InvalidInput("the origin of the boxes is not finite");
+        for (const double x : blocks.origin) {
+            if (!std::isfinite(x)) throw InvalidInput("the origin of the boxes is not finite");
         }
         for (std::size_t d = 0; d < size_; ++d) {
             const int before = d == 0 ? -1 : blocks.axes[d - 1];

@@ -13,8 +13,7 @@ template <int dim>
 BlockGrid<dim>::BlockGrid(const Blocks<dim>& blocks)
     : origin_{blocks.origin}, spacing_{blocks.spacing} {
     detail::BlockChecker<dim> checker(blocks);
-    std::ranges::transform(blocks.axes, axes_.begin(),
-                           [](int axis) { return static_cast<std::size_t>(axis); });
+    for (std::size_t d = 0; d < size_; ++d) axes_[d] = static_cast<std::size_t>(blocks.axes[d]);
     unsigned steps = 0;
     for (std::size_t l = 0; l < blocks.levels.size(); ++l) {
         if (l > 0) steps += std::min(checker.steps(l), 31U);
