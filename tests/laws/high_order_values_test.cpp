@@ -247,6 +247,17 @@ TEST(HighOrderValues, KeepsFewBytesOfALeaf) {
     }
 }
 
+/// Else elements beside jumps were divided as often as the depth allows.
+TEST(HighOrderValues, JumpsAreKnownWithoutTheirNeighbours) {
+    const OfBoxes<3> drawn(
+        WorldOptions{.levels = 1, .least_degree = 2, .greatest_degree = 2, .noise = 0.1},
+        square<3>);
+    EXPECT_GT(drawn.data.jump(), 0.1);
+    const auto result = drawn.surface(0.4, {.tolerance = 0.02, .depth = 6});
+    EXPECT_GT(result.surface.simplices.size(), 100U);
+    EXPECT_EQ(result.counts.limited, 0U);
+}
+
 TEST(HighOrderValues, OtherValuesHaveAnErrorOfTheWholeRange) {
     const OfBoxes<3> drawn(many_leaves, square<3>);
     const VirtualRefinement fine(drawn.data, {.tolerance = 0.1, .values = {{{0.4, 0.5}}}});
