@@ -164,7 +164,8 @@ private:
 
     static std::span<const OfOwner> of_owner(const std::vector<OfOwner>& all, std::uint32_t leaf) {
         const auto [begin, end] = std::equal_range(all.begin(), all.end(), OfOwner{leaf, 0, {}});
-        return {begin, end};
+        const auto first = static_cast<std::size_t>(begin - all.begin());
+        return std::span(all).subspan(first, static_cast<std::size_t>(end - begin));
     }
 
     /// Takes what nodes and the leaf itself need of a leaf while its polynomial is there.
