@@ -30,14 +30,17 @@ double seconds_since(Clock::time_point start) {
 }
 
 void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& request) {
-    const Surface<3>& surface = part.drawn.surface;
+    const bool in_light = part.kind != std::string_view("slice");
+    const bool has_creases = in_light && request.cap && request.normals != NormalType::none;
+    const Surface<3> creased = has_creases ? with_creases(part.drawn.surface) : Surface<3>();
+    const Surface<3>& surface = has_creases ? creased : part.drawn.surface;
     JsonText& text = reply.header;
     text.open('{').key("kind").string(part.kind);
     text.key("triangles").number(static_cast<double>(surface.simplices.size()));
     text.key("visited").number(static_cast<double>(part.drawn.counts.visited));
     text.key("error_bound").number(part.drawn.error_bound);
     write_mesh(reply, surface);
-    if (part.kind == std::string_view("slice")) {
+    if (!in_light) {
         write_values(reply, surface);
     } else if (request.normals == NormalType::int8) {
         write_short_normals(reply, surface.normals);
@@ -45,7 +48,7 @@ void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& re
         write_normals(reply, surface.normals);
     }
     text.close('}');
-    if (request.outlines) write_outlines(reply, surface);
+    if (request.outlines) write_outlines(reply, part.drawn.surface);
 }
 
 }  // namespace

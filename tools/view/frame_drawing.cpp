@@ -103,9 +103,7 @@ FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
                                                under(asked, by.bounds), options, {executor_})};
     if (part.drawn.cancelled) throw FrameAbandoned{};
     if (criteria_.slopes != nullptr && !request_.collapses()) part.distance = dropped.greatest();
-    if (normals && request_.cap) {
-        part.drawn.surface = with_creases(part.drawn.surface);
-    } else if (normals && quickly) {
+    if (normals && quickly && !request_.cap) {
         Surface<3>& surface = part.drawn.surface;
         surface.normals = normals_from_triangles(surface);
     }

@@ -44,7 +44,7 @@ struct FrameRequest {
     std::optional<LensRequest> lens{};  ///< lens=x,y,z,r with finest=, coarsest= and slope=
     std::optional<double> time{};       ///< time=NUMBER
     /// normals=none (int8, float32), of isosurfaces: from gradients, and from triangles while
-    /// moving.
+    /// moving, or where there are caps.
     NormalType normals = NormalType::none;
     bool outlines = false;  ///< outlines=on or off: edges of extracted elements
 

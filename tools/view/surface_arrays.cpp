@@ -85,10 +85,6 @@ Surface<3> with_creases(const Surface<3>& surface) {
     std::ranges::sort(corners);
     Surface<3> creased;
     creased.simplices = surface.simplices;
-    creased.elements = surface.elements;
-    creased.element_of = surface.element_of;
-    creased.shape_of = surface.shape_of;
-    creased.level_of = surface.level_of;
     for (auto begin = corners.begin(); begin != corners.end();) {
         const auto end = std::find_if(begin, corners.end(), [&](const Corner& corner) {
             return corner.first != begin->first;

@@ -35,7 +35,7 @@ void write_outlines(FrameReply& reply, const Surface<3>& surface);
 std::vector<Point> normals_from_triangles(const Surface<3>& surface);
 
 /// Takes vertices of a surface apart where triangles around them meet at more than 40 degrees, and
-/// gives each the mean normal of its triangles, as caps need it. Nothing else is kept but elements.
+/// gives each the mean normal of its triangles, as caps need it. Nothing else is kept.
 Surface<3> with_creases(const Surface<3>& surface);
 
 }  // namespace nestgrid::view
