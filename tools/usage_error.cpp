@@ -65,7 +65,7 @@ std::string taken(const CLI::Option& option) {
 
 /// A value that cannot be read, or too few or too many of them.
 std::string wrong_value(const CLI::ParseError& error, const CLI::App& command) {
-    const std::string text = error.what();
+    std::string text = error.what();
     const CLI::Option* const option = option_in(text, command);
     if (option == nullptr) return text;
     const std::string given = CLI::detail::join(option->results(), ",");

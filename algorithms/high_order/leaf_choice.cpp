@@ -77,7 +77,7 @@ bool LeafChoice::may_have_record(const BaseElement& leaf) const {
     if (parts_.size() == 0) return false;
     std::size_t count = 0;
     for (std::size_t k = 0; k < leaf.shape->corners; ++k) {
-        const std::size_t at = static_cast<std::size_t>(hash(leaf.key[k]));
+        const auto at = static_cast<std::size_t>(hash(leaf.key[k]));
         count += may_be_corner_[at & (may_be_corner_.size() - 1)] ? 1U : 0U;
     }
     return count >= 2;  // an edge has two

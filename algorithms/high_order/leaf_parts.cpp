@@ -112,7 +112,7 @@ void VirtualElements::look_at_error(OpenTask& task, const VirtualElement& e, con
             return makers[c].corner_error(e, own[c], u.subspan(c * corners, corners));
         });
     }
-    const double jump = static_cast<double>(drawn.records->leaves()[e.leaf].jump);
+    const auto jump = static_cast<double>(drawn.records->leaves()[e.leaf].jump);
     looked.error = error + drawn.rounding;
     looked.exceeds =
         static_cast<double>(detail::float_above(looked.error)) > drawn.tolerance + jump;

@@ -78,7 +78,7 @@ NodeMask VirtualElements::Stops::holds(const NewNodes& nodes) const {
     NodeMask mask = 0;
     for (std::size_t n = 0; n < nodes.keys.size(); ++n) {
         const auto fine_enough = [&] {
-            const double size = static_cast<double>(field_.nodes->find(nodes.keys[n])->size);
+            const auto size = static_cast<double>(field_.nodes->find(nodes.keys[n])->size);
             return lens_ == nullptr || lens_->may_stop(size, nodes.positions[n]);
         };
         const bool stops = field_.stops(nodes.keys[n]) &&

@@ -189,7 +189,7 @@ vtkSmartPointer<vtkPolyData> data_of(const Panel& panel, const Drawn& d, const D
 }
 
 vtkSmartPointer<vtkPolyData> appended(std::vector<vtkSmartPointer<vtkPolyData>> surfaces) {
-    const vtkSmartPointer<vtkPolyData> first = surfaces.front();
+    vtkSmartPointer<vtkPolyData> first = surfaces.front();
     std::erase_if(surfaces, [](vtkPolyData* each) { return each->GetNumberOfCells() == 0; });
     if (surfaces.empty()) return first;
     if (surfaces.size() == 1) return surfaces.front();

@@ -47,7 +47,7 @@ protected:
         const int is_read =
             vtkXMLHyperTreeGridReader::ReadArrayValues(element, to, array, from, count, type);
         if (!is_cells || is_read != 0) return is_read;
-        short_.push_back(array);
+        short_.emplace_back(array);
         return 1;
     }
 
