@@ -21,20 +21,37 @@ using namespace nestgrid::view;
 
 namespace {
 
+double wave(const Point& x) { return std::sin(3 * x[0]) + std::cos(4 * x[1]) * x[2]; }
+
+/// A world of polynomials in the page.
+template <class World>
+struct InPage {
+    World world;
+    DegreeField<3> field{world};
+    SequentialExecutor executor;
+    Explorer explorer{
+        still_field(std::shared_ptr<const World>(std::shared_ptr<const void>(), &world), field),
+        executor};
+
+    template <class... Arguments>
+    explicit InPage(Arguments&&... arguments) : world(std::forward<Arguments>(arguments)...) {}
+};
+
+/// The triangles of an isosurface.
+Surface<3> triangles_of(const Frame& frame) {
+    return surface_of<3>(frame.array<float>("isosurface", "positions"),
+                         frame.array<std::uint32_t>("isosurface", "indices"));
+}
+
 /// Frames of data of higher degree are surfaces of the polynomials within the error, whatever the
 /// page calls it.
 TEST(Polynomials, AreDrawnWithinErrorsAndNumbersOfTriangles) {
-    const DegreeWorld<3> world(
-        {.levels = 1, .least_degree = 2, .greatest_degree = 4, .seed = 5},
-        [](const Point& x) { return std::sin(3 * x[0]) + std::cos(4 * x[1]) * x[2]; });
-    const DegreeField<3> field(world);
-    const SequentialExecutor executor;
-    const std::shared_ptr<const DegreeWorld<3>> shared(std::shared_ptr<const void>(), &world);
-    ExploredField explored = still_field(shared, field);
-    Explorer explorer(std::move(explored), executor);
+    InPage<DegreeWorld<3>> page(
+        WorldOptions{.levels = 1, .least_degree = 2, .greatest_degree = 4, .seed = 5}, wave);
+    Explorer& explorer = page.explorer;
     EXPECT_NE(explorer.info().find("\"degree\":4"), std::string::npos);
 
-    const HighOrder data(world, field);
+    const HighOrder data(page.world, page.field);
     EXPECT_NE(explorer.info().find("\"jump\":" + text_of(data.jump())), std::string::npos);
     const Plane plane({0.1, 0.2, 0.3}, {1, 0.2, 0.1});
     const std::string asked = "isovalue=0.1&plane=0.1,0.2,0.3,1,0.2,0.1";
@@ -71,54 +88,39 @@ TEST(Polynomials, AreDrawnWithinErrorsAndNumbersOfTriangles) {
 
 /// A frame of curved leaves is that of the library within the same error of positions.
 TEST(CurvedLeaves, AreDrawnWithinErrorsOfPositions) {
-    using World = CurvedWorld<DegreeWorld<3>>;
-    const auto gyroid = [](const Point& x) {
-        return std::sin(3 * x[0]) + std::cos(4 * x[1]) * x[2];
-    };
     const Bend bend{[](const Point& x) {
         return Point{x[0] + 0.1 * x[1] * x[1], x[1] - 0.1 * x[0] * x[2], x[2]};
     }};
-    const World world(bend, WorldOptions{.least_degree = 2, .greatest_degree = 2}, gyroid);
-    const DegreeField<3> field(world);
-    const SequentialExecutor executor;
-    const std::shared_ptr<const World> shared(std::shared_ptr<const void>(), &world);
-    Explorer explorer(still_field(shared, field), executor);
-    EXPECT_NE(explorer.info().find("\"curved\":true"), std::string::npos);
-    const HighOrder data(world, field);
+    const WorldOptions options{.least_degree = 2, .greatest_degree = 2};
+    InPage<CurvedWorld<DegreeWorld<3>>> page(bend, options, wave);
+    EXPECT_NE(page.explorer.info().find("\"curved\":true"), std::string::npos);
+    const HighOrder data(page.world, page.field);
     std::vector<double> triangles;
     for (const double positions : {0.1, 0.01, 0.001}) {
         const VirtualRefinement fine(data, {.tolerance = 0.1, .position_tolerance = positions});
         const auto surface = isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds()));
         const Frame frame =
-            frame_of(explorer, "isovalue=0.1&error=0.1&position_error=" + text_of(positions));
+            frame_of(page.explorer, "isovalue=0.1&error=0.1&position_error=" + text_of(positions));
         expect_part(frame, "isosurface", surface.surface);
         EXPECT_EQ(frame.number("position_bound"), surface.position_bound);
         EXPECT_LE(frame.number("position_bound"), positions);
         triangles.push_back(frame.number("triangles"));
     }
     EXPECT_GT(triangles.back(), 2 * triangles.front());
-    const DegreeWorld<3> straight(WorldOptions{.least_degree = 2, .greatest_degree = 2}, gyroid);
-    const DegreeField<3> on_straight(straight);
-    const std::shared_ptr<const DegreeWorld<3>> borrowed(std::shared_ptr<const void>(), &straight);
-    Explorer without(still_field(borrowed, on_straight), executor);
-    expect_refused([&] { frame_of(without, "isovalue=0.1&error=0.1&position_error=0.1"); },
-                   "the elements are straight");
+    InPage<DegreeWorld<3>> straight(options, wave);
+    expect_refused(
+        [&] { frame_of(straight.explorer, "isovalue=0.1&error=0.1&position_error=0.1"); },
+        "the elements are straight");
 }
 
 /// A capped isosurface is closed, whatever detail is held at, and has the triangles asked for.
 TEST(Caps, CloseIsosurfaces) {
-    const DegreeWorld<3> world(
-        {.levels = 1, .least_degree = 1, .greatest_degree = 3, .seed = 7},
-        [](const Point& x) { return std::sin(3 * x[0]) + std::cos(4 * x[1]) * x[2]; });
-    const DegreeField<3> field(world);
-    const SequentialExecutor executor;
-    const std::shared_ptr<const DegreeWorld<3>> shared(std::shared_ptr<const void>(), &world);
-    Explorer explorer(still_field(shared, field), executor);
+    InPage<DegreeWorld<3>> page(
+        WorldOptions{.levels = 1, .least_degree = 1, .greatest_degree = 3, .seed = 7}, wave);
+    Explorer& explorer = page.explorer;
     const auto edges_at_boundary = [&](const std::string& what) {
-        const Frame frame = frame_of(explorer, "isovalue=0.1&" + what);
-        const auto surface = surface_of<3>(frame.array<float>("isosurface", "positions"),
-                                           frame.array<std::uint32_t>("isosurface", "indices"));
-        const SurfaceReport report = surface_report(surface);
+        const SurfaceReport report =
+            surface_report(triangles_of(frame_of(explorer, "isovalue=0.1&" + what)));
         return report.open_edges + report.boundary_edges;
     };
     for (const char* const held : {"error=0.1", "triangles=5000", "error=0.1&motion=moving"}) {
@@ -130,16 +132,10 @@ TEST(Caps, CloseIsosurfaces) {
 
 /// The part of a box where x is at least 0.1 is a box, with the normals of one.
 TEST(Caps, HaveEdges) {
-    const DegreeWorld<3> world({.levels = 1, .least_degree = 1, .greatest_degree = 2, .seed = 7},
-                               [](const Point& x) { return x[0]; });
-    const DegreeField<3> field(world);
-    const SequentialExecutor executor;
-    const std::shared_ptr<const DegreeWorld<3>> shared(std::shared_ptr<const void>(), &world);
-    Explorer explorer(still_field(shared, field), executor);
-    const auto triangles_of = [](const Frame& frame) {
-        return surface_of<3>(frame.array<float>("isosurface", "positions"),
-                             frame.array<std::uint32_t>("isosurface", "indices"));
-    };
+    InPage<DegreeWorld<3>> page(
+        WorldOptions{.levels = 1, .least_degree = 1, .greatest_degree = 2, .seed = 7},
+        [](const Point& x) { return x[0]; });
+    Explorer& explorer = page.explorer;
     const std::string asked = "isovalue=0.1&error=0.1&cap=on";
     const Surface<3> without = triangles_of(frame_of(explorer, asked));
     for (const std::string motion : {"settled", "moving"}) {

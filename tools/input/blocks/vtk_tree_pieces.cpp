@@ -24,8 +24,6 @@ namespace {
 using nestgrid::InvalidInput;
 namespace fs = std::filesystem;
 
-std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
-
 std::vector<fs::path> files_in(const fs::path& path) {
     check_xml_end(path);
     const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(
@@ -149,7 +147,7 @@ vtkSmartPointer<vtkHyperTreeGrid> read_phtg(const fs::path& path) {
             }
             joined->add(*piece);
         } catch (const InvalidInput& error) {
-            throw InvalidInput("the piece " + quoted(file.filename()) + ": " + error.what());
+            throw InvalidInput("the piece '" + file.filename().string() + "': " + error.what());
         }
     }
     return joined->finish();
