@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What HighOrder keeps of a solution, and what a drawing gathers of it: the polynomials and records
-// of the leaves that it looks at. The last one gathered is kept for the next drawing.
+// The data behind HighOrder: a few numbers of each leaf and the table of nodes, made once for a
+// solution; and the polynomials and records of the leaves that a drawing looks at, which are
+// gathered for it. Those gathered last are kept for the next drawing.
 #pragma once
 
 #include <mutex>
@@ -36,7 +37,7 @@ struct GatheredLeaves {
     }
 };
 
-/// What is made once per solution.
+/// A solution: the hierarchy, facts of its leaves, and the leaves gathered last.
 struct HighOrderData {
     using DrawnValues = std::optional<std::vector<std::array<double, 2>>>;
 
@@ -55,7 +56,8 @@ struct HighOrderData {
     /// The leaves that VirtualOptions::values asks for.
     /// \throw GridError where the hierarchy has changed, or as HighOrder
     std::shared_ptr<const GatheredLeaves> gathered(const DrawnValues& values) const;
-    /// The same, of leaves that are chosen, and not kept for others.
+    /// Polynomials, and records unless these are not needed, of the leaves that `chooses` returns
+    /// true for; not kept for another drawing.
     GatheredLeaves gather(const LeafChoice::Chooses& chooses,
                           LeafChoice::Needs needs = LeafChoice::Needs::records) const;
     /// Made when a lens first asks for them.

@@ -86,7 +86,8 @@ private:
 
 class LeafRecords {
 public:
-    /// Those of all leaves, in the order of the walk, before read_all().
+    /// Finds the records of all leaves, which have the order of the walk. Their polynomials are not
+    /// there before read_all().
     /// \throw GridError where a degree is not 1 to 8, and names the leaf
     LeafRecords(const LeafFunction& function, const BaseWalk& walk);
     /// Asks the function once for each leaf, in the order of the walk, and forgets what around()
@@ -97,12 +98,13 @@ public:
     /// \throw GridError where a value is not finite, and names the leaf
     void read_all(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary,
                   const std::function<void(std::uint32_t leaf)>& ready);
-    /// None.
+    /// The records of no leaf.
     explicit LeafRecords(const LeafSummary& summary)
         : components_{summary.components}, drawn_{summary.drawn} {}
-    /// Those of leaves that are chosen, in the order of their choice, and of the owners around.
-    /// Asks the function once for each. Where the choice has no records, polynomials alone.
-    /// \throw GridError
+    /// Reads the chosen leaves, in the order of the choice, and behind them the owners of records
+    /// on these. Asks the function once for each leaf. Where the choice marks no parts for records,
+    /// there are polynomials alone.
+    /// \throw GridError as the other constructor and read_all()
     LeafRecords(const LeafFunction& function, const BaseWalk& walk, const LeafChoice& choice,
                 const LeafSummary& summary);
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is kept of the polynomials of all leaves: 12 bytes a leaf for the field, 4 for positions.
+// Ranges and jumps of the polynomials of all leaves, which stay when the polynomials themselves are
+// gone: 12 bytes a leaf for the field, 4 for positions.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +16,8 @@
 namespace nestgrid::engine {
 
 struct LeafSummary {
-    /// What component 0 is within, in a leaf and on its records, and what is drawn of it under any
-    /// criterion: above the least value of all, rounded outwards.
+    /// An interval that component 0 stays in, in a leaf and on its records, whatever a criterion
+    /// makes of corner values. Numbers are above the least value of all leaves, rounded outwards.
     struct Range {
         float least;
         float greatest;

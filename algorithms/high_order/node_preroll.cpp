@@ -59,7 +59,8 @@ public:
     }
 
 private:
-    /// What is read from a record while its owner is there.
+    /// A node on a part of a record: its numbers are read while the polynomial of the owner, a
+    /// leaf, is in memory.
     struct OfOwner {
         std::uint32_t owner;
         std::uint32_t node;
