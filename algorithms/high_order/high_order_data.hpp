@@ -39,7 +39,7 @@ struct GatheredLeaves {
 
 /// A solution: the hierarchy, facts of its leaves, and the leaves gathered last.
 struct HighOrderData {
-    using DrawnValues = std::optional<std::vector<std::array<double, 2>>>;
+    using DrawnValues = decltype(VirtualOptions::values);
 
     std::optional<WidenedHierarchy<float>> widened;  // where the values are float
     const Hierarchy<double>* base;

@@ -4,12 +4,10 @@
 // What all drawings under a projection have in common (drawing.hpp).
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <type_traits>
-#include <vector>
 
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
@@ -50,7 +48,7 @@ std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
                                                  const Projection& projection, const Work& work);
 
 /// The level sets of polynomials that are drawn (VirtualOptions::values); nothing: all leaves are.
-using DrawnValues = std::optional<std::vector<std::array<double, 2>>>;
+using DrawnValues = decltype(VirtualOptions::values);
 /// Those of isovalues. \param cap whether what is inside them is drawn on the boundary, too
 DrawnValues values_at(std::span<const double> isovalues, bool cap);
 /// The polynomials within a tolerance, of which infinity is one, and as finely as the lens of the
