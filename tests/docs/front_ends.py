@@ -25,6 +25,9 @@ REASONS = {
     "g": "by C++ only: it is a function of the caller's own types",
     "h": "by Ctrl-C, or by the next request",
     "i": "printed with every surface",
+    "j": "what is made for a field is kept with it, so that all calls are a series",
+    "k": "the pointer tells the value, the place and the error",
+    "l": "the field of the caller gives the values between its frames",
 }
 FRONT_ENDS = ["C++", "C, Fortran", "program", "page", "Python", "VTK", "ParaView"]
 # Of each feature one cell for each front end: a name, or the letter of a reason.
@@ -32,22 +35,22 @@ TABLE = {
     "What is drawn": {
         "an isosurface": "isosurface nestgrid_isosurface_with isosurface isovalue isosurface IsosurfaceSource "
         "NestgridIsosurface",
-        "several in one walk": "isosurfaces nestgrid_isosurfaces --value a isosurfaces SetMoreIsovalues MoreIsovalues",
-        "a series of them": "IsosurfaceSeries a a a a a a",
+        "several in one walk": "isosurfaces nestgrid_isosurfaces --value isovalue isosurfaces SetMoreIsovalues MoreIsovalues",
+        "a series of them": "IsosurfaceSeries prerolls --value j j j j",
         "a band between two": "isoband nestgrid_isoband band a isoband IsobandSource NestgridBand",
         "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",
-        "by a sphere, a cylinder": "Sphere nestgrid_slice_along --sphere a sphere SetCutFunction Shape",
-        "by any function": "LevelFunction nestgrid_slice_along --function a a SetCutFunction a",
+        "by a sphere, a cylinder": "Sphere nestgrid_slice_along --sphere sphere sphere SetCutFunction Shape",
+        "by any function": "LevelFunction nestgrid_slice_along --function a function SetCutFunction Function",
         "isolines in the plane": "isolines nestgrid_isolines isolines d isolines IsolinesSource NestgridIsolines",
         "isolines on a surface": "surface_isolines nestgrid_surface_isolines --on-surface a isolines b b",
         "a height field, a shading": "height_field nestgrid_height_field height d height_field "
         "HeightFieldSource NestgridHeightField",
-        "the boundary of the domain": "boundary_surface nestgrid_boundary_surface boundary a boundary BoundarySource "
+        "the boundary of the domain": "boundary_surface nestgrid_boundary_surface boundary boundary boundary BoundarySource "
         "NestgridBoundary",
         "data that jump": "DiscontinuousData a c c c a c",
-        "values at points": "probe nestgrid_probe probe a probe b b",
+        "values at points": "probe nestgrid_probe probe k probe b b",
         "edges of elements": "outlines elements --outlines outlines outlines SetOutlines Outlines",
-        "cracks, area, volume": "surface_report f i a report b b",
+        "cracks, area, volume": "surface_report f i report report b b",
         "measured errors": "measure_error nestgrid_measure --measure a measure a a",
     },
     "How finely": {
@@ -68,7 +71,7 @@ TABLE = {
         "a lens": "Lens lens --lens lens lens SetLens LensRadius",
         "a region": "Region region --box a region SetProjection RegionBounds",
         "a criterion of one's own": "Criterion g g g g g g",
-        "times between frames": "Frames a --time time Frames SetFrames TimestepValues",
+        "times between frames": "Frames l --time time Frames SetFrames TimestepValues",
     },
     "How, and what is kept": {
         "normals": "normals normals --no-normals normals normals SetNormals Normals",

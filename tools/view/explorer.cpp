@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
+#include <nestgrid/algorithms/surface_report.hpp>
 #include <nestgrid/error.hpp>
 
 #include "frame_reply.hpp"
@@ -29,9 +31,18 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+void write_report(JsonText& text, const SurfaceReport& report) {
+    text.key("area").number(report.area);
+    text.key("volume").number(report.closed() ? report.volume
+                                              : std::numeric_limits<double>::quiet_NaN());
+    text.key("open_edges").number(static_cast<double>(report.open_edges));
+}
+
 void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& request) {
     const bool in_light = part.kind != std::string_view("slice");
-    const bool has_creases = in_light && request.cap && request.normals != NormalType::none;
+    const bool has_values = part.kind != std::string_view("isosurface");
+    const bool has_creases =
+        in_light && (request.cap || has_values) && request.normals != NormalType::none;
     const Surface<3> creased = has_creases ? with_creases(part.drawn.surface) : Surface<3>();
     const Surface<3>& surface = has_creases ? creased : part.drawn.surface;
     JsonText& text = reply.header;
@@ -39,9 +50,12 @@ void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& re
     text.key("triangles").number(static_cast<double>(surface.simplices.size()));
     text.key("visited").number(static_cast<double>(part.drawn.counts.visited));
     text.key("error_bound").number(part.drawn.error_bound);
+    if (!has_values) text.key("isovalue").number(part.isovalue);
+    if (!has_values && request.report) write_report(text, surface_report(part.drawn.surface));
     write_mesh(reply, surface);
+    if (has_values) write_values(reply, surface);
     if (!in_light) {
-        write_values(reply, surface);
+        // The colours of a slice are those of the legend.
     } else if (request.normals == NormalType::int8) {
         write_short_normals(reply, surface.normals);
     } else if (request.normals == NormalType::float32) {
@@ -138,7 +152,7 @@ FrameCriteria Explorer::criteria_for(const FrameRequest& request, Prerolls& mome
         throw InvalidInput("the elements are straight: leave out position_error");
     }
     if (degree_ > 1) return polynomials_for(request, moment, work, steps);
-    const std::vector<double> isovalues(request.isovalue ? 1 : 0, request.isovalue.value_or(0));
+    const std::vector<double>& isovalues = request.isovalues;
     Projection projection{.indicator = request.indicator, .lens = request.lens};
     if (!keeps_surface(request)) {
         steps.begin("Measuring what counts as detail");
@@ -149,12 +163,12 @@ FrameCriteria Explorer::criteria_for(const FrameRequest& request, Prerolls& mome
     FrameCriteria criteria{
         Criteria(moment, {.indicator = "deviation", .lens = request.lens}, isovalues, work),
         moment.choose("deviation", 1, {}, work).bounds};
-    if (!request.isovalue || (request.moving && request.error > 0)) return criteria;
+    if (isovalues.empty() || (request.moving && request.error > 0)) return criteria;
     if (!request.collapse || request.distance > 0) {
         steps.begin("Measuring distances of the surface");
         criteria.slopes = moment.choose("slope", 1, isovalues, work).indicator;
     }
-    if (request.plane && request.distance == 0) return criteria;
+    if (request.cuts() && request.distance == 0) return criteria;
     steps.begin("Measuring errors of the surface");
     projection.indicator = request.distance > 0 ? "slope" : "error";
     criteria.detail = Criteria(moment, projection, isovalues, work);

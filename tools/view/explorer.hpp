@@ -5,17 +5,17 @@
 // threads of its own or pictures, so that a server and WebAssembly in the page use the same.
 //
 // Invariants:
-//   - the isosurface of a frame is that of isosurface() with the same criterion, vertices rounded
-//     to float, and its slice that of slice();
+//   - the isosurfaces of a frame are those of isosurfaces() with the same criterion, vertices
+//     rounded to float, and its slice and boundary those of slice() and boundary_surface();
 //   - a settled frame does not depend on the frames before it: the threshold of a number of
 //     triangles is the least one of 8 significant bits at which the frame keeps within it, or,
 //     where none does, the greatest one;
 //   - a moving frame costs one extraction in most cases (FrameBudget); where it misses the number
-//   of
-//     triangles by more than 5 %, it is drawn again, and then searched for like a settled one, but
-//     not once a search has missed the number, too;
+//     of triangles by more than 5 %, it is drawn again, and then searched for like a settled one,
+//     but not once a search has missed the number, too;
 //   - a frame of an error keeps it. A settled one keeps it with fewer triangles where elements are
-//     simplices and there is no slice: cut deviations are measured anew for each isovalue;
+//     simplices and isosurfaces alone are drawn: cut deviations are measured anew for each
+//     isovalue;
 //   - slopes are measured for settled frames alone: a moving frame of a distance has the number of
 //     triangles of the last settled one.
 #pragma once
@@ -58,10 +58,11 @@ public:
     ///         (isosurface_options.hpp), distance (of a settled isosurface from that of all data,
     ///         an estimate, where an error or a distance is asked for and nothing is collapsed;
     ///         else null), seconds, draws (extractions that the frame took), and a list of parts:
-    ///         kind (isosurface, slice or outlines), triangles (segments), visited, error_bound,
-    ///         and arrays: positions, three float32 a vertex; indices, three uint32 a triangle, two
-    ///         a segment; normals, four int8 (times 1/127; the last is 0) or three float32 a
-    ///         vertex; values, one float32 a vertex
+    ///         kind (isosurface, slice, boundary or outlines), triangles (segments), visited,
+    ///         error_bound, of isosurfaces isovalue and in a report area, volume (null where it is
+    ///         not closed) and open_edges, and arrays: positions, three float32 a vertex; indices,
+    ///         three uint32 a triangle, two a segment; normals, four int8 (times 1/127; the last is
+    ///         0) or three float32 a vertex; values, one float32 a vertex
     /// \param watch told what is being done; where it returns false, the next frame is drawn as if
     ///        this one had not been asked for
     /// \throw FrameAbandoned where it does

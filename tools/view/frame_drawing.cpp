@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
+#include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/collapse.hpp>
 #include <nestgrid/algorithms/slices.hpp>
 
@@ -21,7 +23,17 @@ FrameDrawing::FrameDrawing(const FrameRequest& request, const FieldOnGrid& field
       criteria_{criteria},
       executor_{work.executor()},
       steps_{steps} {
-    if (request.plane) plane_.emplace(request.plane->through, request.plane->normal);
+    if (request.plane) {
+        const auto& [through, normal] = *request.plane;
+        cuts_.push_back({"slice", std::make_shared<Plane>(through, normal)});
+    }
+    if (request.sphere) {
+        const auto& [centre, radius] = *request.sphere;
+        cuts_.push_back({"slice", std::make_shared<Sphere>(centre, radius)});
+    }
+    if (request.boundary) {
+        cuts_.push_back({"boundary", std::make_shared<nestgrid::detail::Everywhere>(), true});
+    }
 }
 
 /// Calls function(hierarchy, what stops there) for what is drawn at a threshold.
@@ -38,10 +50,12 @@ auto FrameDrawing::with(double threshold, const Function& function) const {
     VirtualOptions options{.tolerance = std::max(threshold, data.least_tolerance(positions)),
                            .lens = request_.lens,
                            .position_tolerance = positions};
-    const std::optional<double>& isovalue = request_.isovalue;
-    if (isovalue && !plane_ && !request_.collapses()) {
-        const double greatest = request_.cap ? std::numeric_limits<double>::infinity() : *isovalue;
-        options.values.emplace({std::array{*isovalue, greatest}});
+    if (cuts_.empty() && !request_.collapses()) {
+        options.values.emplace();
+        for (const double isovalue : request_.isovalues) {
+            options.values->push_back(
+                {isovalue, request_.cap ? std::numeric_limits<double>::infinity() : isovalue});
+        }
     }
     const VirtualRefinement fine(data, options);
     const Hierarchy<double>& hierarchy = fine;
@@ -51,16 +65,18 @@ auto FrameDrawing::with(double threshold, const Function& function) const {
 std::vector<FramePart> FrameDrawing::draw(double threshold) const {
     steps_.begin("Drawing");
     std::vector<FramePart> parts;
-    if (plane_) {
+    if (!cuts_.empty()) {
         with(threshold, [&](const auto& hierarchy, const StoppedBy& by) {
-            parts.push_back({"slice", draw_slice(hierarchy, by)});
+            for (const Cut& cut : cuts_) parts.push_back(draw_cut(cut, hierarchy, by));
         });
     }
-    if (!request_.isovalue) return parts;
+    if (request_.isovalues.empty()) return parts;
     const double first = request_.collapses() ? collapse_start * threshold : threshold;
     with(first, [&](const auto& hierarchy, const StoppedBy& by) {
-        parts.push_back(draw_isosurface(hierarchy, by));
-        if (request_.collapses()) collapse_edges(parts.back(), hierarchy);
+        for (FramePart& part : draw_isosurfaces(hierarchy, by)) {
+            if (request_.collapses()) collapse_edges(part, hierarchy);
+            parts.push_back(std::move(part));
+        }
     });
     return parts;
 }
@@ -72,14 +88,14 @@ bool FrameDrawing::fits(double threshold) const {
     options.progress = [&](const TraversalCounts&) { return waits = steps_.tell(); };
     const bool fit = with(threshold, [&](const auto& hierarchy, const StoppedBy& by) {
         std::uint64_t most = request_.triangles;
-        if (plane_) {  // merged at nodes, it has fewer triangles than are counted
-            const std::size_t used = draw_slice(hierarchy, by).surface.simplices.size();
+        for (const Cut& cut : cuts_) {  // merged at nodes, it has fewer triangles than are counted
+            const std::size_t used = draw_cut(cut, hierarchy, by).drawn.surface.simplices.size();
             if (used > most) return false;
             most -= used;
         }
-        if (!request_.isovalue) return true;
-        return count_triangles(hierarchy, {{}, {*request_.isovalue}},
-                               under(by.criterion, by.bounds), most, options, {executor_})
+        if (request_.isovalues.empty()) return true;
+        return count_triangles(hierarchy, {{}, request_.isovalues}, under(by.criterion, by.bounds),
+                               most, options, {executor_})
             .has_value();
     });
     if (!waits) throw FrameAbandoned{};
@@ -87,8 +103,8 @@ bool FrameDrawing::fits(double threshold) const {
 }
 
 template <class Real>
-FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
-                                        const StoppedBy& by) const {
+std::vector<FramePart> FrameDrawing::draw_isosurfaces(const Hierarchy<Real>& hierarchy,
+                                                      const StoppedBy& by) const {
     const bool normals = request_.normals != NormalType::none;
     const bool quickly = request_.moving || request_.collapses();
     IsosurfaceOptions options = watched({.cap = request_.cap, .elements = request_.outlines});
@@ -99,32 +115,41 @@ FramePart FrameDrawing::draw_isosurface(const Hierarchy<Real>& hierarchy,
     options.cuts = keeps ? Cuts::linear : Cuts::finest;
     const DroppedNodes dropped(by.criterion, criteria_.slopes.get());
     const Criterion& asked = criteria_.slopes == nullptr ? by.criterion : dropped;
-    FramePart part{"isosurface", isosurface<3>(hierarchy, *request_.isovalue,
-                                               under(asked, by.bounds), options, {executor_})};
-    if (part.drawn.cancelled) throw FrameAbandoned{};
-    if (criteria_.slopes != nullptr && !request_.collapses()) part.distance = dropped.greatest();
-    if (normals && quickly && !request_.cap) {
-        Surface<3>& surface = part.drawn.surface;
-        surface.normals = normals_from_triangles(surface);
+    std::vector<Isosurface<3>> drawn = isosurfaces<3>(
+        hierarchy, request_.isovalues, under(asked, by.bounds), options, {executor_});
+    std::vector<FramePart> parts;
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+        if (drawn[i].cancelled) throw FrameAbandoned{};
+        parts.push_back({"isosurface", std::move(drawn[i]), request_.isovalues[i]});
+        FramePart& part = parts.back();
+        if (criteria_.slopes != nullptr && !request_.collapses()) {
+            part.distance = dropped.greatest();
+        }
+        if (normals && quickly && !request_.cap) {
+            Surface<3>& surface = part.drawn.surface;
+            surface.normals = normals_from_triangles(surface);
+        }
     }
-    return part;
+    return parts;
 }
 
 template <class Real>
 void FrameDrawing::collapse_edges(FramePart& part, const Hierarchy<Real>& hierarchy) const {
     steps_.begin("Taking triangles away");
     Isosurface<3>& drawn = part.drawn;
-    collapse(drawn.surface, hierarchy, *request_.isovalue, *criteria_.bounds,
-             {.error = request_.error}, executor_)
+    collapse(drawn.surface, hierarchy, part.isovalue, *criteria_.bounds, {.error = request_.error},
+             executor_)
         .hand_to(drawn, drawn.surface_error);
 }
 
 template <class Real>
-Slice FrameDrawing::draw_slice(const Hierarchy<Real>& hierarchy, const StoppedBy& by) const {
-    Slice drawn = slice(hierarchy, *plane_, under(by.criterion, by.bounds),
-                        watched({.elements = request_.outlines}), {executor_});
-    if (drawn.cancelled) throw FrameAbandoned{};
-    return drawn;
+FramePart FrameDrawing::draw_cut(const Cut& cut, const Hierarchy<Real>& hierarchy,
+                                 const StoppedBy& by) const {
+    FramePart part{cut.kind,
+                   slice(hierarchy, *cut.function, under(by.criterion, by.bounds),
+                         watched({.cap = cut.cap, .elements = request_.outlines}), {executor_})};
+    if (part.drawn.cancelled) throw FrameAbandoned{};
+    return part;
 }
 
 /// Options of an extraction that ends where nobody waits for it.

@@ -5,12 +5,13 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <nestgrid/algorithms/criteria.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 
 #include "frame_request.hpp"
@@ -21,6 +22,8 @@ namespace nestgrid::view {
 struct FramePart {
     const char* kind;
     Isosurface<3> drawn;
+    /// Of an isosurface; else not a number.
+    double isovalue = std::numeric_limits<double>::quiet_NaN();
     /// An estimate, in units of length, of how far an isosurface is from that of all data: the
     /// greatest slope deviation of a node that it drops. Not a number where it was not asked
     /// for.
@@ -50,6 +53,12 @@ public:
     bool fits(double threshold) const;
 
 private:
+    /// What is coloured by the data.
+    struct Cut {
+        const char* kind;
+        std::shared_ptr<const LevelFunction> function;
+        bool cap = false;
+    };
     struct StoppedBy {
         const Criterion& criterion;
         const Bounds& bounds;
@@ -58,17 +67,18 @@ private:
     template <class Function>
     auto with(double threshold, const Function& function) const;
     template <class Real>
-    FramePart draw_isosurface(const Hierarchy<Real>& hierarchy, const StoppedBy& by) const;
+    std::vector<FramePart> draw_isosurfaces(const Hierarchy<Real>& hierarchy,
+                                            const StoppedBy& by) const;
     template <class Real>
     void collapse_edges(FramePart& part, const Hierarchy<Real>& hierarchy) const;
     template <class Real>
-    Slice draw_slice(const Hierarchy<Real>& hierarchy, const StoppedBy& by) const;
+    FramePart draw_cut(const Cut& cut, const Hierarchy<Real>& hierarchy, const StoppedBy& by) const;
     IsosurfaceOptions watched(IsosurfaceOptions options) const;
 
     const FrameRequest& request_;
     const FieldOnGrid& field_;
     const FrameCriteria& criteria_;
-    std::optional<Plane> plane_;
+    std::vector<Cut> cuts_;
     const Executor& executor_;
     WatchedSteps& steps_;
 };

@@ -14,8 +14,11 @@ namespace nestgrid::view {
 namespace {
 
 constexpr const char* known_keys =
-    "isovalue, axis, at, plane, threshold, triangles, error, position_error, distance, collapse, "
-    "cap, motion, indicator, lens, finest, coarsest, slope, time, normals and outlines";
+    "isovalue, axis, at, plane, sphere, boundary, threshold, triangles, error, position_error, "
+    "distance, collapse, cap, motion, indicator, lens, finest, coarsest, slope, time, normals, "
+    "outlines and report";
+
+constexpr std::size_t most_isovalues = 20;
 
 std::string names_of(const std::vector<const IndicatorKind*>& kinds) {
     std::string names;
@@ -27,6 +30,12 @@ std::string names_of(const std::vector<const IndicatorKind*>& kinds) {
 
 Point point_at(const std::vector<double>& numbers, std::size_t first) {
     return {numbers[first], numbers[first + 1], numbers[first + 2]};
+}
+
+Ball ball_of(std::string_view key, std::string_view text) {
+    const std::vector<double> n = numbers_of(key, text, 4);
+    if (n[3] < 0) refuse(key, "a ball with a negative radius", text);
+    return {point_at(n, 0), n[3]};
 }
 
 void take_plane(Entries& entries, FrameRequest& request) {
@@ -92,15 +101,19 @@ void check_detail(const FrameRequest& request, bool names_indicator) {
     if (by_surface && names_indicator) {
         throw InvalidInput("an error and a distance have indicators of their own: leave it out");
     }
-    if (request.distance > 0 && !request.isovalue) {
+    const bool surface = !request.isovalues.empty();
+    if (request.distance > 0 && !surface) {
         throw InvalidInput("a distance is that of an isosurface: give isovalue");
     }
-    if (request.cap && !request.isovalue) {
+    if (request.cap && !surface) {
         throw InvalidInput("a cap closes an isosurface: give isovalue");
+    }
+    if (request.report && !surface) {
+        throw InvalidInput("a report is that of isosurfaces: give isovalue");
     }
     if (!request.collapse) return;
     if (request.cap) throw InvalidInput("caps are not collapsed: leave out cap or collapse");
-    if (!(request.error > 0) || !request.isovalue) {
+    if (!(request.error > 0) || !surface) {
         throw InvalidInput("collapse needs the error of an isosurface that is to be kept");
     }
     if (request.outlines) {
@@ -110,11 +123,8 @@ void check_detail(const FrameRequest& request, bool names_indicator) {
 
 void take_lens(Entries& entries, FrameRequest& request) {
     LensRequest lens;
-    const bool ball = entries.take("lens", [&](auto key, auto text) {
-        const std::vector<double> n = numbers_of(key, text, 4);
-        if (n[3] < 0) refuse(key, "a ball with a negative radius", text);
-        lens.distance = Ball{point_at(n, 0), n[3]};
-    });
+    const bool ball =
+        entries.take("lens", [&](auto key, auto text) { lens.distance = ball_of(key, text); });
     bool sized = false;
     for (const auto& [key, number] : {std::pair{"finest", &lens.finest},
                                       {"coarsest", &lens.coarsest},
@@ -140,9 +150,15 @@ std::vector<const IndicatorKind*> page_indicators() {
 FrameRequest parse_request(std::string_view text) {
     Entries entries(text);
     FrameRequest request;
-    entries.take("isovalue",
-                 [&](auto key, auto value) { request.isovalue = number_of(key, value); });
+    entries.take("isovalue", [&](auto key, auto value) {
+        request.isovalues = number_list_of(key, value, most_isovalues);
+    });
     take_plane(entries, request);
+    entries.take("sphere", [&](auto key, auto value) {
+        request.sphere = ball_of(key, value);
+        if (!(request.sphere->radius > 0)) refuse(key, "a sphere without a radius", value);
+    });
+    entries.take("boundary", [&](auto key, auto value) { request.boundary = is_on(key, value); });
     take_detail(entries, request);
     take_lens(entries, request);
     entries.take("motion", [&](auto key, auto value) {
@@ -164,11 +180,13 @@ FrameRequest parse_request(std::string_view text) {
                                                      {"float32", NormalType::float32}}});
     });
     entries.take("outlines", [&](auto key, auto value) { request.outlines = is_on(key, value); });
+    entries.take("report", [&](auto key, auto value) { request.report = is_on(key, value); });
     entries.take("cap", [&](auto key, auto value) { request.cap = is_on(key, value); });
     entries.take("collapse", [&](auto key, auto value) { request.collapse = is_on(key, value); });
     entries.require_empty(known_keys);
-    if (!request.isovalue && !request.plane) {
-        throw InvalidInput("nothing is to be drawn: give isovalue, plane, or axis and at");
+    if (request.isovalues.empty() && !request.cuts()) {
+        throw InvalidInput(
+            "nothing is to be drawn: give isovalue, plane, axis and at, sphere, or boundary");
     }
     check_detail(request, names_indicator);
     return request;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a page asks for, as text: key=value between &, such as
-//     isovalue=0.3&triangles=50000&motion=moving&normals=int8&axis=z&at=12
+//     isovalue=0.3,0.5&triangles=50000&motion=moving&normals=int8&axis=z&at=12
 // The server and the WebAssembly module have no other parser.
 #pragma once
 
@@ -25,9 +25,11 @@ struct PlaneRequest {
 };
 
 struct FrameRequest {
-    std::optional<double> isovalue{};     ///< isovalue=NUMBER; where there is none, no isosurface
+    std::vector<double> isovalues{};      ///< isovalue=NUMBER,..., of as many isosurfaces
     std::optional<PlaneRequest> plane{};  ///< plane=x,y,z,x,y,z, a point and the normal; or axis=x
                                           ///< (y, z) with at=COORDINATE
+    std::optional<Ball> sphere{};         ///< sphere=x,y,z,r, a slice along it
+    bool boundary = false;                ///< boundary=on: that of the domain, with values
     // Detail is held at one of these, or all of it is drawn.
     double threshold = 0;         ///< threshold=NUMBER, in units of the indicator
     std::uint64_t triangles = 0;  ///< triangles=COUNT, a goal
@@ -47,7 +49,10 @@ struct FrameRequest {
     /// moving, or where there are caps.
     NormalType normals = NormalType::none;
     bool outlines = false;  ///< outlines=on or off: edges of extracted elements
+    bool report = false;    ///< report=on: areas, volumes and cracks of isosurfaces
 
+    /// Whether anything beside isosurfaces is drawn.
+    bool cuts() const { return plane || sphere || boundary; }
     /// Edges are collapsed when nothing moves.
     bool collapses() const { return collapse && !moving; }
 };

@@ -49,6 +49,14 @@ std::vector<double> numbers_of(std::string_view key, std::string_view text, std:
     return numbers;
 }
 
+std::vector<double> number_list_of(std::string_view key, std::string_view text, std::size_t most) {
+    const auto commas = static_cast<std::size_t>(std::count(text.begin(), text.end(), ','));
+    if (commas >= most) {
+        refuse(key, "a list of more than " + std::to_string(most) + " numbers", text);
+    }
+    return numbers_of(key, text, commas + 1);
+}
+
 double number_of(std::string_view key, std::string_view text) {
     return numbers_of(key, text, 1).front();
 }

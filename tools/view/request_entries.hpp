@@ -18,6 +18,8 @@ namespace nestgrid::view {
 /// Finite numbers between commas.
 /// \throw InvalidInput where they are not so many
 std::vector<double> numbers_of(std::string_view key, std::string_view text, std::size_t count);
+/// Any number of them, from one to \p most.
+std::vector<double> number_list_of(std::string_view key, std::string_view text, std::size_t most);
 double number_of(std::string_view key, std::string_view text);
 double number_at_least_0(std::string_view key, std::string_view text);
 

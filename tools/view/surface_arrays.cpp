@@ -85,6 +85,8 @@ Surface<3> with_creases(const Surface<3>& surface) {
     std::ranges::sort(corners);
     Surface<3> creased;
     creased.simplices = surface.simplices;
+    const std::size_t components =
+        surface.attributes.size() / std::max<std::size_t>(surface.vertices.size(), 1);
     for (auto begin = corners.begin(); begin != corners.end();) {
         const auto end = std::find_if(begin, corners.end(), [&](const Corner& corner) {
             return corner.first != begin->first;
@@ -101,6 +103,10 @@ Surface<3> with_creases(const Surface<3>& surface) {
             Point normal{0, 0, 0};
             const auto number = static_cast<std::uint32_t>(creased.vertices.size());
             creased.vertices.push_back(surface.vertices[begin->first]);
+            const std::size_t first = begin->first * components;
+            for (std::size_t c = 0; c < components; ++c) {
+                creased.attributes.push_back(surface.attributes[first + c]);
+            }
             for (; begin != piece; ++begin) {
                 const std::uint32_t t = begin->second / 3;
                 normal = normal + area[t] * direction[t];

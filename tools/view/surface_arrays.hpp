@@ -35,7 +35,8 @@ void write_outlines(FrameReply& reply, const Surface<3>& surface);
 std::vector<Point> normals_from_triangles(const Surface<3>& surface);
 
 /// Takes vertices of a surface apart where triangles around them meet at more than 40 degrees, and
-/// gives each the mean normal of its triangles, as caps need it. Nothing else is kept.
+/// gives each the mean normal of its triangles, as caps and boundaries need it. Of what else there
+/// is, attributes are kept.
 Surface<3> with_creases(const Surface<3>& surface);
 
 }  // namespace nestgrid::view

@@ -92,6 +92,32 @@ try {
   await click('cap');
   await slide('isovalue', 400);
 
+  // Several isosurfaces, a slice along a sphere and the boundary, with areas and volumes.
+  await page.$eval('#more', (field) => {
+    field.value = '80 120';
+    field.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  await opened.settled();
+  await page.select('#slice', 'sphere');
+  await opened.settled();
+  await click('boundary');
+  const parts = await page.evaluate(() => window.nestgrid.shown.frame.parts.map(
+    ({ kind, isovalue, area, volume }) => ({ kind, isovalue, area, volume })));
+  check(parts.map(({ kind }) => kind).join(' ') === 'slice boundary isosurface isosurface isosurface',
+    `the parts are ${JSON.stringify(parts)}`);
+  const surfaces = parts.slice(2);
+  check(surfaces[1].isovalue === 80 && surfaces[2].isovalue === 120, JSON.stringify(surfaces));
+  check((await text('number-area')).split(' · ').length === 3, `the areas are ${await text('number-area')}`);
+  check(page.url().includes('more=80,120') && page.url().includes('slice=sphere')
+    && page.url().includes('boundary=on'), `the address tells nothing of the parts: ${page.url()}`);
+  await page.$eval('#more', (field) => {
+    field.value = 'many';
+    field.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  check(await page.$eval('#more', (field) => field.getAttribute('aria-invalid')) === 'true', 'many is an isovalue');
+  check((await frame()).request.includes('80,120'), 'what is no number takes isovalues away');
+  await opened.go('#detail=error');
+
   // A distance is about kept; while something moves, the number of triangles is.
   await click('by-distance');
   let last = Infinity;

@@ -23,7 +23,15 @@ TEST(Requests, ThatAreMalformedAreRefusedInOneSentence) {
         {"isovalue=inf", "no finite number"},
         {"isovalue=1e999", "no finite number"},
         {"isovalue=0x10", "no finite number"},
-        {"isovalue=1,2", "no finite number"},
+        {"isovalue=1,", "not 2 finite numbers"},
+        {"isovalue=1,,2", "not 3 finite numbers"},
+        {"isovalue=" + std::string(40, '1') + std::string(20, ','), "more than 20 numbers"},
+        {"sphere=0,0,0", "not 4 finite numbers"},
+        {"sphere=0,0,0,0", "a sphere without a radius"},
+        {"sphere=0,0,0,-1", "a negative radius"},
+        {"boundary=off", "nothing is to be drawn"},
+        {"boundary=yes", "boundary is none of on, off"},
+        {"boundary=on&report=on", "a report is that of isosurfaces"},
         {"isovalue= 1", "no finite number"},
         {"isovalue=1 ", "no finite number"},
         {"isovalue=1%20", "no finite number"},
@@ -89,7 +97,7 @@ TEST(Requests, SayWhatTheyAskFor) {
     const FrameRequest r = parse_request(
         "isovalue=-1.5e-3&axis=y&at=2&triangles=1e5&motion=moving&indicator=numerical&"
         "lens=1,2,3,4&finest=0.1&coarsest=8&slope=2&time=3&normals=int8&outlines=on");
-    EXPECT_EQ(r.isovalue, -1.5e-3);
+    EXPECT_EQ(r.isovalues, std::vector{-1.5e-3});
     EXPECT_EQ(r.plane->through, (Point{0, 2, 0}));
     EXPECT_EQ(r.plane->normal, (Point{0, 1, 0}));
     EXPECT_EQ(r.triangles, 100000U);
@@ -104,7 +112,14 @@ TEST(Requests, SayWhatTheyAskFor) {
     EXPECT_EQ(r.normals, NormalType::int8);
     EXPECT_TRUE(r.outlines);
     EXPECT_FALSE(r.cap);
+    EXPECT_FALSE(r.boundary);
     EXPECT_EQ(parse_request("isovalue=1&distance=0.5").distance, 0.5);
+    const FrameRequest several =
+        parse_request("isovalue=3,1,2&sphere=1,2,3,4&boundary=on&report=on");
+    EXPECT_EQ(several.isovalues, (std::vector<double>{3, 1, 2}));
+    EXPECT_EQ(several.sphere->centre, (Point{1, 2, 3}));
+    EXPECT_EQ(several.sphere->radius, 4);
+    EXPECT_TRUE(several.boundary && several.report);
     const FrameRequest closed = parse_request("isovalue=1&error=1&cap=on&position_error=0.125");
     EXPECT_TRUE(closed.cap);
     EXPECT_EQ(closed.position_error, 0.125);

@@ -4,7 +4,7 @@
 // Sliders and selections. They show a state and say which part of it the reader changes; while a
 // slider is dragged the change is 'moving', when it is let go 'settled'.
 import { percent, readable, readableCount, withUnit } from './colours.js';
-import { collapses, diagonalOf, heldAt } from './state.js';
+import { collapses, diagonalOf, heldAt, isEmpty, listIn } from './state.js';
 import { setControl, setWhy } from './status.js';
 
 const byId = (id) => document.getElementById(id);
@@ -50,7 +50,7 @@ export class Controls {
     this.#slider('slice-at', (t) => ({ at: this.#placeScale.value(t) }));
     this.#slider('lens-radius', (t) => ({ radius: this.#radiusScale.value(t) }));
     this.#slider('time', (t) => ({ time: this.#timeAt(t) }));
-    for (const id of ['surface', 'cap', 'outlines', 'collapse']) {
+    for (const id of ['surface', 'cap', 'boundary', 'outlines', 'collapse']) {
       byId(id).addEventListener('change', (e) => change({ [id]: e.target.checked }, 'settled'));
     }
     for (const held of details) {
@@ -67,6 +67,11 @@ export class Controls {
       e.target.setAttribute('aria-invalid', String(!valid));
       if (valid) change({ isovalue: value }, 'settled');
     });
+    byId('more').addEventListener('change', (e) => {
+      const more = listIn('more', e.target.value);
+      this.#setMoreInvalid(more === null);
+      if (more) change({ more }, 'settled');
+    });
     byId('play').addEventListener('click', () => this.#play());
     byId('slice-face').addEventListener('click', () => change({ slice: 'view' }, 'settled'));
   }
@@ -75,6 +80,12 @@ export class Controls {
   reset() {
     this.#stopPlaying();
     byId('isovalue-number').setAttribute('aria-invalid', 'false');
+    this.#setMoreInvalid(false);
+  }
+
+  #setMoreInvalid(invalid) {
+    byId('more').setAttribute('aria-invalid', String(invalid));
+    byId('more-why').hidden = !invalid;
   }
 
   /** Offers the indicators of the field: those that the page has no text for by what they measure. */
@@ -93,6 +104,7 @@ export class Controls {
     this.#offer(info);
     byId('surface').checked = state.surface;
     byId('outlines').checked = state.outlines;
+    byId('boundary').checked = state.boundary;
     byId('collapse').checked = state.collapse;
     byId('cap').checked = state.cap;
     const held = heldAt(state);
@@ -122,9 +134,9 @@ export class Controls {
 
   /** Dims what means nothing at the moment, and says why. */
   #showWhyNot(state, held) {
-    const nothing = !state.surface && state.slice === 'none';
+    const nothing = isEmpty(state);
     for (const section of ['detail-section', 'lens-section', 'outlines-section']) {
-      setWhy(section, nothing ? 'Nothing is drawn: choose the isosurface or a slice.' : '');
+      setWhy(section, nothing ? 'Nothing is drawn: choose the isosurface, a slice or the boundary.' : '');
     }
     if (nothing) return;
     const all = held === 'threshold' && state.threshold === 0;
@@ -145,8 +157,11 @@ export class Controls {
     if (document.activeElement !== byId('isovalue-number')) {
       byId('isovalue-number').value = readable(state.isovalue, range);
     }
+    if (document.activeElement !== byId('more')) {
+      byId('more').value = state.more.map((x) => readable(x, range)).join(', ');
+    }
     const length = (x) => withUnit(readable(x), info.length_unit);
-    const place = state.slice === 'view' ? 'distance from the centre' : state.slice;
+    const place = { view: 'distance from the centre', sphere: 'radius' }[state.slice] ?? state.slice;
     this.#say('isovalue', null, withUnit(readable(state.isovalue, range), info.unit));
     this.#say('triangles', 'triangles-text', `about ${readableCount(state.triangles)} triangles`);
     this.#say('threshold', 'threshold-text', this.#thresholdText(state, info));
@@ -203,10 +218,9 @@ export class Controls {
   get #placeScale() {
     const { slice } = this.#state;
     const [low, high] = this.#info.box;
-    if (slice === 'view') {
-      const half = diagonalOf(this.#info.box) / 2;
-      return linear(-half, half);
-    }
+    const half = diagonalOf(this.#info.box) / 2;
+    if (slice === 'sphere') return linear(half / 1000, half);
+    if (slice === 'view') return linear(-half, half);
     const d = Math.max(['x', 'y', 'z'].indexOf(slice), 0);
     return linear(low[d], high[d]);
   }

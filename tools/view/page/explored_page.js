@@ -55,6 +55,18 @@ function nearness({ error_bound: bound, bound_says_nothing: nothing, distance },
   return parts.join(' · ');
 }
 
+/** Area and volume of isosurfaces as rows of numbers, where they have been measured. */
+function measures({ parts }, unit) {
+  const surfaces = parts.filter(({ area }) => area !== undefined);
+  if (surfaces.length === 0) return [];
+  const list = (name, power) => surfaces.map((part) => (part[name] === null
+    ? 'open' : withUnit(readable(part[name]), unit && `${unit}${power}`))).join(' · ');
+  return [
+    ['area', 'area', list('area', '²'), 'Of the isosurfaces, in the order of their values'],
+    ['volume', 'volume', list('volume', '³'), 'Where the data are greater: of surfaces that are closed'],
+  ];
+}
+
 export class ExploredPage {
   #info;
   #state;
@@ -137,8 +149,8 @@ export class ExploredPage {
   /** Values of one frame say something of another one, those of a component or array do not. */
   #stateBehind(kept, changed) {
     if (changed === 'frame') return kept;
-    const { isovalue, threshold, error, detail } = this.#start;
-    return { ...kept, isovalue, threshold, error, detail };
+    const { isovalue, more, threshold, error, detail } = this.#start;
+    return { ...kept, isovalue, more, threshold, error, detail };
   }
 
   /** Draws what a lost engine has not drawn. */
@@ -220,7 +232,7 @@ export class ExploredPage {
     if (!frame) {
       this.#picture.clear();
       showNumbers([]);
-      showEmpty('Nothing is chosen: switch on the isosurface, or choose a slice.');
+      showEmpty('Nothing is chosen: switch on the isosurface, or choose a slice or the boundary.');
       return;
     }
     showEmpty(frame.triangles > 0 ? '' : 'There is nothing here: no data have this value.');
@@ -229,7 +241,7 @@ export class ExploredPage {
     const bound = frame.bound_says_nothing ? null : frame.error_bound;
     this.#picture.show(frame, {
       field: name, unit, lengthUnit, least, greatest, bound,
-      isovalue: this.#seen.surface ? this.#seen.isovalue : null,
+      isovalues: this.#seen.surface ? [this.#seen.isovalue, ...this.#seen.more] : [],
       plane: planeOf(this.#seen, this.#info),
     });
     this.#showNumbers(frame, bound === null ? 'the bound says nothing here' : readable(bound, range), how);
@@ -256,6 +268,7 @@ export class ExploredPage {
         'Between elements: the error may be greater by this than what was asked for']] : []),
       ...(this.#info.curved ? [['positions', 'points off by', withUnit(readable(frame.position_bound), lengthUnit),
         'Points of the surface are no farther from their places in the curved elements']] : []),
+      ...measures(frame, lengthUnit),
       ['threshold', name, readable(asked), meaning],
       ['visited', 'visited', `${readableCount(frame.visited)} elements`,
         'Elements that the search entered'],

@@ -15,14 +15,14 @@ function fillBar(context, x, y, width, height) {
 }
 
 /**
- * The values at the bar: the ends, round ones between them, and a mark, which may be null.
+ * The values at the bar: the ends, round ones between them, and marks, which may lie outside.
  * returns [{ part, from 0 to 1; text; marks }]
  */
-export function ticksOf(least, greatest, mark) {
+export function ticksOf(least, greatest, wanted) {
   const range = greatest - least;
   const part = (value) => (range > 0 ? (value - least) / range : 0);
   const ends = range > 0 ? [least, greatest] : [least];
-  const marks = mark === null || mark < least || mark > greatest ? [] : [mark];
+  const marks = wanted.filter((mark) => mark >= least && mark <= greatest);
   const step = roundStep(range / 4);
   const between = [];
   for (let i = Math.ceil(least / step); range > 0 && i * step < greatest; ++i) between.push(i * step);
@@ -41,14 +41,14 @@ export function roundStep(x) {
   return unit * ([1, 2, 5].find((step) => step * unit >= x * (1 - 1e-9)) ?? 10);
 }
 
-/** Shows the legend of { field, unit, least, greatest, mark }, or none. */
+/** Shows the legend of { field, unit, least, greatest, marks }, or none. */
 export function showLegend(legend) {
   byId('legend').hidden = !legend;
   if (!legend) return;
   byId('legend-title').textContent = titleOf(legend);
   const bar = byId('legend-bar');
   fillBar(bar.getContext('2d'), 0, 0, bar.width, bar.height);
-  byId('legend-ticks').replaceChildren(...ticksOf(legend.least, legend.greatest, legend.mark)
+  byId('legend-ticks').replaceChildren(...ticksOf(legend.least, legend.greatest, legend.marks)
     .map(({ part, text, marks }) => {
       const span = document.createElement('span');
       span.style.bottom = `${100 * part}%`;
@@ -72,7 +72,7 @@ export function drawLegend(context, legend, left, bottom, em, colour) {
   context.strokeRect(x, y - height, width, height);
   context.textAlign = 'left';
   context.textBaseline = 'middle';
-  for (const { part, text, marks } of ticksOf(legend.least, legend.greatest, legend.mark)) {
+  for (const { part, text, marks } of ticksOf(legend.least, legend.greatest, legend.marks)) {
     context.font = fontOf(em, marks);
     context.fillText(marks ? `◂ ${text}` : text, x + width + 0.6 * em, y - part * height);
   }

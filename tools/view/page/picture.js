@@ -65,13 +65,13 @@ export class Picture {
   /**
    * Shows a frame.
    * scale: { field, its name; unit, lengthUnit, '' where they are not known; least, greatest, the ends
-   *   of the colours, null where nothing has one; isovalue, null where the surface has none; bound, of
-   *   the error, null where it says nothing; plane, { point, normal } of the slice, or null }
+   *   of the colours, null where nothing has one; isovalues, of its isosurfaces; bound, of the error,
+   *   null where it says nothing; plane, { point, normal } of the slice, or null }
    */
   show(frame, scale) {
-    const { field, unit, least, greatest, isovalue } = scale;
-    const legend = frame.parts.some((part) => part.values)
-      ? { field, unit, least, greatest, mark: isovalue } : null;
+    const { field, unit, least, greatest, isovalues } = scale;
+    const legend = frame.parts.some((part) => part.values) || isovalues.length > 1
+      ? { field, unit, least, greatest, marks: isovalues } : null;
     showLegend(legend);
     this.#stage.setPlane(scale.plane);
     this.#stage.show(frame, least, greatest);
@@ -132,7 +132,8 @@ export class Picture {
     const place = hit
       ? ['x', 'y', 'z'].map((axis, d) => `${axis} ${readable(hit.point[d])}${unit}`) : [];
     let text = place.join('   ');
-    const value = hit && (hit.value ?? this.#scale.isovalue);
+    const { isovalues } = this.#scale ?? {};
+    const value = hit && (hit.value ?? (isovalues.length === 1 ? isovalues[0] : null));
     if (hit && value !== null) {
       const range = this.#scale.greatest - this.#scale.least;
       text += `\n${this.#scale.field} = ${readable(value, range)}`;

@@ -138,9 +138,9 @@ export class PushedPage {
     const { field, least, greatest } = frame;
     // Colours of a surface are those of another quantity than the one whose value it has.
     const coloured = frame.parts.some((part) => part.values);
-    const isovalue = coloured ? null : frame.isovalue;
+    const isovalues = coloured || frame.isovalue === null ? [] : [frame.isovalue];
     this.#picture.show(frame, {
-      field, unit: '', lengthUnit: '', least, greatest, isovalue, bound: null, plane: null });
+      field, unit: '', lengthUnit: '', least, greatest, isovalues, bound: null, plane: null });
     byId('outlines-section').hidden = !frame.outlined;
     const number = (x) => (Number.isInteger(x) ? readableCount(x) : readable(x));
     showNumbers([

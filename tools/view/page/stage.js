@@ -26,6 +26,18 @@ function letter(text, colour) {
   return new THREE.Sprite(new THREE.SpriteMaterial({ map }));
 }
 
+/** Of several surfaces the one of the smallest extent; nothing of none. */
+function smallest(parts) {
+  let found = null;
+  let least = Infinity;
+  for (const part of parts) {
+    const box = new THREE.Box3().setFromArray(part.positions);
+    const extent = parts.length > 1 && !box.isEmpty() ? box.getSize(new THREE.Vector3()).length() : Infinity;
+    if (!found || extent < least) [found, least] = [part, extent];
+  }
+  return found;
+}
+
 /** A circle that faces the reader, also where the surface hides its centre. */
 function circle({ centre, radius }, color) {
   const line = new THREE.LineLoop(
@@ -147,25 +159,34 @@ export class Stage {
       part.material.dispose();
     }
     this.#parts.clear();
-    for (const part of frame.parts) this.#parts.add(this.#object(part, least, greatest));
+    const isosurfaces = frame.parts.filter((part) => part.kind === 'isosurface');
+    const colours = { least, greatest, several: isosurfaces.length > 1 };
+    const innermost = smallest(isosurfaces);
+    for (const part of frame.parts) {
+      const opens = innermost && part !== innermost && (part.kind === 'boundary' || part.kind === 'isosurface');
+      this.#parts.add(this.#object(part, { ...colours, opacity: opens ? 0.35 : 1 }));
+    }
     this.draw();
   }
 
-  #object(part, least, greatest) {
+  #object(part, colours) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(part.positions, 3));
     geometry.setIndex(new THREE.BufferAttribute(part.indices, 1));
-    const object = this.#drawn(part, geometry, least, greatest);
+    const object = this.#drawn(part, geometry, colours);
     // Spares the search for a sphere around the surface, once a frame.
     object.frustumCulled = false;
-    object.userData = { kind: part.kind };
+    object.userData = { kind: part.kind, isovalue: part.isovalue ?? null };
     return object;
   }
 
-  #drawn(part, geometry, least, greatest) {
+  /** colours: their ends; whether there are several isosurfaces, which have those of their values; opacity,
+      1 for what hides what is behind it */
+  #drawn(part, geometry, { least, greatest, several, opacity }) {
     if (part.kind === 'outlines') {
       return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({
-        color: colourOf('outline', this.#scheme), transparent: true, opacity: 0.55 }));
+        color: colourOf('outline', this.#scheme), transparent: true, opacity: 0.55,
+        userData: { colour: 'outline' } }));
     }
     const look = {
       side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
@@ -174,9 +195,13 @@ export class Stage {
       geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
       geometry.setAttribute('value', new THREE.BufferAttribute(part.values, 1));
       look.vertexColors = true;
+    } else if (several) {
+      look.color = new THREE.Color(...coloursOf([part.isovalue], least, greatest));
     } else {
       look.color = new THREE.Color(colourOf('surface', this.#scheme));
+      look.userData = { colour: 'surface' };
     }
+    if (opacity < 1) Object.assign(look, { transparent: true, opacity, depthWrite: false });
     // A slice has no normals: its colours are those of the legend, without light.
     if (!part.normals) return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(look));
     geometry.setAttribute('normal', new THREE.BufferAttribute(part.normals, 4, true));
@@ -194,11 +219,12 @@ export class Stage {
     if (this.#camera.isParallel) {
       this.#raycaster.ray.recast(-20 * diagonalOf(this.#box));
     }
-    const meshes = this.#parts.children.filter((part) => part.isMesh);
+    const meshes = this.#parts.children.filter(({ isMesh, material, userData: { kind } }) => (
+      isMesh && !(kind === 'boundary' && material.transparent)));
     const hit = this.#raycaster.intersectObjects(meshes, false)[0];
     if (!hit) return null;
     const value = hit.object.geometry.getAttribute('value');
-    const found = { point: [...hit.point], kind: hit.object.userData.kind, value: null };
+    const found = { point: [...hit.point], kind: hit.object.userData.kind, value: hit.object.userData.isovalue };
     if (value) {
       const corners = ['a', 'b', 'c'].map((k) => hit.face[k]);
       const x = corners.map((i) => new THREE.Vector3().fromBufferAttribute(
@@ -261,9 +287,9 @@ export class Stage {
     this.#scheme = scheme;
     this.#ground = colourOf('stage', scheme);
     this.#drawFrame();
-    for (const { material, userData, geometry } of this.#parts.children) {
-      if (userData.kind === 'outlines') material.color.set(colourOf('outline', scheme));
-      else if (!geometry.getAttribute('color')) material.color.set(colourOf('surface', scheme));
+    for (const { material } of this.#parts.children) {
+      const { colour } = material.userData;
+      if (colour) material.color.set(colourOf(colour, scheme));
     }
     this.draw();
   }

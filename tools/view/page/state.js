@@ -7,6 +7,10 @@ export function diagonalOf(box) {
   return Math.hypot(...box[1].map((x, d) => x - box[0][d]));
 }
 
+function middleOf([low, high]) {
+  return low.map((x, d) => (x + high[d]) / 2);
+}
+
 /** Of what one file may have several of; null where it has one, or the first is in the picture. */
 const noChoice = { array: null, component: null, frame: null };
 
@@ -16,6 +20,7 @@ export function defaultState(info) {
   return {
     surface: true,
     isovalue: info.isovalue,
+    more: [],
     cap: false,
     detail: 'triangles',
     triangles: 50000,
@@ -29,6 +34,7 @@ export function defaultState(info) {
     slice: 'none',
     at: (low[2] + high[2]) / 2,
     normal: [0, 0, 1],
+    boundary: false,
     lens: 'off',
     radius: 0.08 * diagonalOf(info.box),
     centre: null,
@@ -65,11 +71,25 @@ export function choiceFromAddress(hash, files) {
 
 const choices = {
   detail: ['triangles', 'error', 'distance', 'threshold'],
-  slice: ['none', 'x', 'y', 'z', 'view'],
+  slice: ['none', 'x', 'y', 'z', 'view', 'sphere'],
   lens: ['off', 'cursor', 'click'],
   projection: ['perspective', 'parallel'],
 };
-const lists = { normal: 3, centre: 3, camera: 9 };
+/** Lists of numbers: how many, at least and at most. */
+const lists = { more: [0, 19], normal: [3, 3], centre: [3, 3], camera: [9, 9] };
+
+/** The numbers in a text with commas or spaces between them, or null. */
+export function numbersIn(text) {
+  const numbers = text.split(/[\s,]+/).filter((each) => each !== '').map(Number);
+  return numbers.every(Number.isFinite) ? numbers : null;
+}
+
+/** The same for a part of the state; null also where they are too few or too many. */
+export function listIn(key, text) {
+  const numbers = numbersIn(text);
+  const [least, most] = lists[key];
+  return numbers && numbers.length >= least && numbers.length <= most ? numbers : null;
+}
 
 /** The state in an address, #key=value&..., on top of where a page begins; what is malformed does not
     count. Indicators are those of the field, [name, what it measures]. */
@@ -84,8 +104,7 @@ export function stateFromAddress(hash, start, indicators = []) {
     } else if (typeof state[key] === 'boolean') {
       state[key] = text === 'on';
     } else if (lists[key]) {
-      const numbers = text.split(',').map(Number);
-      if (numbers.length === lists[key] && numbers.every(Number.isFinite)) state[key] = numbers;
+      state[key] = listIn(key, text) ?? state[key];
     } else if (text !== '' && Number.isFinite(Number(text))) {
       state[key] = Number(text);
     }
@@ -120,13 +139,17 @@ export function addressWithoutChoice(hash) {
 
 /** The plane of the slice, { point, normal }, or null. */
 export function planeOf({ slice, at, normal }, { box: [low, high] }) {
-  if (slice === 'none') return null;
+  if (slice === 'none' || slice === 'sphere') return null;
   if (slice === 'view') {
-    const centre = low.map((x, d) => (x + high[d]) / 2);
-    return { point: centre.map((x, d) => x + at * normal[d]), normal };
+    return { point: middleOf([low, high]).map((x, d) => x + at * normal[d]), normal };
   }
   const along = ['x', 'y', 'z'].map((axis) => (axis === slice ? 1 : 0));
   return { point: along.map((x) => x * at), normal: along };
+}
+
+/** Whether nothing is to be drawn. */
+export function isEmpty({ surface, slice, boundary }) {
+  return !surface && slice === 'none' && !boundary;
 }
 
 /** What detail is held at: a distance is that of an isosurface. */
@@ -155,15 +178,18 @@ function detailOf(state) {
 
 /** A request as frame_request.hpp describes it, or null where nothing is to be drawn. */
 export function requestOf(state, info, motion) {
+  if (isEmpty(state)) return null;
   const entries = [];
-  if (state.surface) entries.push(`isovalue=${state.isovalue}`);
-  if (state.slice === 'view') {
+  if (state.surface) entries.push(`isovalue=${[state.isovalue, ...state.more].join(',')}`);
+  if (state.boundary) entries.push('boundary=on');
+  if (state.slice === 'sphere') {
+    entries.push(`sphere=${[...middleOf(info.box), state.at].join(',')}`);
+  } else if (state.slice === 'view') {
     const { point, normal } = planeOf(state, info);
     entries.push(`plane=${[...point, ...normal].join(',')}`);
   } else if (state.slice !== 'none') {
     entries.push(`axis=${state.slice}`, `at=${state.at}`);
   }
-  if (entries.length === 0) return null;
   entries.push(...detailOf(state), `motion=${motion}`, 'normals=int8');
   if (state.lens !== 'off' && state.centre) {
     entries.push(`lens=${[...state.centre, state.radius].join(',')}`, 'slope=1');
@@ -172,5 +198,6 @@ export function requestOf(state, info, motion) {
   if (caps(state)) entries.push('cap=on');
   if (info.curved) entries.push(`position_error=${state.positions}`);
   if (state.outlines && !collapses(state)) entries.push('outlines=on');
+  if (state.surface && motion === 'settled') entries.push('report=on');
   return entries.join('&');
 }
