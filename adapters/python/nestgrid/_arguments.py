@@ -244,6 +244,17 @@ def shape(*parts: tuple[str, int]) -> Kind:
     return kind
 
 
+def function_of_place(value: Any) -> tuple[Callable[[float, float, float], float], float]:
+    """A function of x, y and z, or (function, steepness)."""
+    function, steepness = value if isinstance(value, tuple) and len(value) == 2 else (value, math.inf)
+    if not callable(function):
+        raise not_a("a function of x, y and z, or (function, steepness)", value)
+    try:
+        return function, not_negative(steepness)
+    except Unfit as unfit:
+        raise Unfit(f"is wrong: the steepness {unfit}", unfit.error) from None
+
+
 def _with_holes(array: np.ma.MaskedArray) -> np.ndarray:
     """A copy with nan for masked entries, of a type that keeps all other numbers."""
     if array.dtype.kind not in "biuf":

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Iterable, Sequence, Union
+from typing import Any, Callable, Iterable, Sequence, Union
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ._arguments import (
     InvalidType,
     SurfaceIndicator,
     flag,
+    function_of_place,
     name_of,
     not_a,
     not_negative,
@@ -33,6 +34,7 @@ from ._projection import coloured_projection_of, projection_of, surface_projecti
 from ._results import Lines, Surface
 
 Numbers = Union[Sequence[float], np.ndarray]
+Function = Callable[[float, float, float], float]
 
 
 def _surface(value: Any) -> Surface:
@@ -318,6 +320,7 @@ class Field:
         plane=optional(shape(("the point", 3), ("the normal", 3))),
         sphere=optional(shape(("the centre", 3), ("the radius", 0))),
         cylinder=optional(shape(("the point", 3), ("the axis", 3), ("the radius", 0))),
+        function=optional(function_of_place),
         distance=optional(number),
         collapse=flag,
         colour_tolerance=not_negative,
@@ -328,6 +331,7 @@ class Field:
         plane: tuple[Numbers, Numbers] | None = None,
         sphere: tuple[Numbers, float] | None = None,
         cylinder: tuple[Numbers, Numbers, float] | None = None,
+        function: Function | tuple[Function, float] | None = None,
         threshold: float | None = None,
         max_triangles: int | None = None,
         indicator: Indicator = "offset",
@@ -348,25 +352,29 @@ class Field:
         plane     (point, normal), 3 numbers each; the normal of any length
         sphere    (centre, radius), 3 numbers and one, in units of length
         cylinder  (point on the axis, axis, radius), 3 numbers, 3 of any length, and one
-        distance  of a sphere or a cylinder with collapse: no point of what is left is farther from
-                  the slice of all data, and none of that from what is left, in units of length.
+        function  whose zero it is: continuous, of three numbers x, y, z; or (function, steepness),
+                  where its values at two points differ by at most steepness times their distance:
+                  without one, it is called for all elements
+        distance  of what is no plane, with collapse: no point of what is left is farther from the
+                  slice of all data, and none of that from what is left, in units of length.
                   None: the slice keeps its place
         collapse  whether to take edges away while error is kept, or down to max_triangles of the
                   least error: one of these must be given
         colour_tolerance  split triangles until colours follow the field within this, in the units
                   of the data; 0: not at all
 
-        Raises InvalidInput unless there is one of plane, sphere and cylinder, and as isosurface().
+        Raises InvalidInput unless there is one of plane, sphere, cylinder and function, and as
+        isosurface(); what the function raises, and TypeError where it gives no number.
         """
-        given = {"plane": plane, "sphere": sphere, "cylinder": cylinder}
+        given = {"plane": plane, "sphere": sphere, "cylinder": cylinder, "function": function}
         shapes = [(name, each) for name, each in given.items() if each is not None]
         if len(shapes) != 1:
-            raise InvalidInput("slice(): a slice needs one of plane, sphere and cylinder")
+            raise InvalidInput("slice(): a slice needs one of plane, sphere, cylinder and function")
         ((name, parts),) = shapes
-        function = getattr(_nestgrid, name)(*parts)
+        along = getattr(_nestgrid, name)(*parts)
         if distance is not None:
             if not collapse or plane is not None:
-                raise InvalidInput("distance needs collapse, and a sphere or a cylinder")
+                raise InvalidInput("distance needs collapse, and a slice that is no plane")
             if not distance > 0:
                 raise InvalidInput("distance is not a number > 0: leave it out to keep the place")
         projection = coloured_projection_of(
@@ -375,7 +383,7 @@ class Field:
         )
         options = (normals, elements, collapse, distance or 0)
         return Surface._of(
-            _nestgrid.slice(self._source, function, *options, projection, threads), self
+            _nestgrid.slice(self._source, along, *options, projection, threads), self
         )
 
     @takes(values=numbers, max_segments=optional(whole(1)))

@@ -83,6 +83,29 @@ void bind_domains(py::module_& m) {
         py::arg("nearest"), py::arg("farthest"));
 }
 
+/// A function of Python, which any thread calls with Python's lock.
+class CalledFunction final : public LevelFunction {
+public:
+    CalledFunction(py::function function, double steepness)
+        : function_{keep(std::move(function))}, steepness_{steepness} {}
+    /// \throw py::error_already_set where the function raises, or gives no number
+    double value(const Point& x) const override {
+        const py::gil_scoped_acquire locked;
+        const py::handle function(
+            const_cast<PyObject*>(static_cast<const PyObject*>(function_.get())));
+        const double value = PyFloat_AsDouble(function(x[0], x[1], x[2]).ptr());
+        if (value == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+        return value;
+    }
+    double variation(const Point& /*centre*/, double radius) const override {
+        return steepness_ * radius;
+    }
+
+private:
+    std::shared_ptr<const void> function_;
+    double steepness_;
+};
+
 void bind_requests(py::module_& m) {
     py::class_<LensRequest>(m, "Lens").def(
         py::init([](const Domain& domain, double finest, double coarsest, double slope) {
@@ -141,6 +164,13 @@ void bind_requests(py::module_& m) {
                 point_of(through, "the point"), point_of(axis, "the axis"), radius));
         },
         py::arg("through"), py::arg("axis"), py::arg("radius"));
+    m.def(
+        "function",
+        [](py::function call, double steepness) {
+            return std::shared_ptr<LevelFunction>(
+                std::make_shared<CalledFunction>(std::move(call), steepness));
+        },
+        py::arg("call"), py::arg("steepness"));
 }
 
 using SourcePointer = std::shared_ptr<Source>;

@@ -104,9 +104,9 @@ def test_wrong_arguments():
         volume.isosurface(3, max_triangles=1)
     with refused("threads is -1"):
         volume.isosurface(3, threads=-1)
-    with refused("one of plane, sphere and cylinder"):
+    with refused("one of plane, sphere, cylinder and function"):
         volume.slice()
-    with refused("one of plane, sphere and cylinder"):
+    with refused("one of plane, sphere, cylinder and function"):
         volume.slice(plane=((0, 0, 0), (1, 0, 0)), sphere=((0, 0, 0), 1))
     with refused("the normal has 2 numbers, not 3"):
         volume.slice(plane=((0, 0, 0), (1, 0)))

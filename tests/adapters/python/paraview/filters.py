@@ -4,6 +4,7 @@
 
 Arguments: a folder with stored.nestgrid, where files may be written.
 """
+import math
 import os
 import sys
 
@@ -127,6 +128,14 @@ def check_where_and_how():
     )
     slice.Shape, slice.Error, slice.MaxTriangles = "Cylinder", 0, 500
     assert 0 < fetch(slice).GetNumberOfPolys() <= 500
+    slice.Shape, slice.MaxTriangles, slice.Function = "Function", 0, "sin(x) + y*z/9"
+    slice.Collapse, slice.Error = 0, 5
+    same(fetch(slice), volume.slice(function=lambda x, y, z: math.sin(x) + y * z / 9, error=5))
+    wrong = ("x +", "w*x", "(lambda: 1)()", "x.real", "sqrt(x)", "1/(x - x)", "exit()", "'a'*x")
+    for slice.Function in wrong:
+        assert fetch(slice).GetNumberOfPolys() == 0, f"{slice.Function} is drawn"
+    slice.Function = "sin(x) + y*z/9"
+    assert fetch(slice).GetNumberOfPolys() > 0
     band = pv.NestgridBand(Input=wavelet, Band=[150, 200], Threshold=5)
     same(fetch(band), volume.isoband(150, 200, 5))
     boundary = pv.NestgridBoundary(Input=wavelet, Error=5)

@@ -5,6 +5,9 @@ data in a plane, and a reader of .nestgrid files.
 
 python -m nestgrid.paraview starts ParaView so that it finds this file.
 """
+import ast
+import math
+
 from paraview import print_error
 from paraview.util.vtkAlgorithm import smproperty, smproxy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -258,11 +261,15 @@ SHAPE = """
 <IntVectorProperty name="Shape" command="SetShape" number_of_elements="1" default_values="0">
   <EnumerationDomain name="enum">
     <Entry value="0" text="Plane"/><Entry value="1" text="Sphere"/>
-    <Entry value="2" text="Cylinder"/>
+    <Entry value="2" text="Cylinder"/><Entry value="3" text="Function"/>
   </EnumerationDomain>
-  <Documentation>What cuts: a plane across the normal, a sphere around the origin, or a cylinder
-  around the normal through it.</Documentation>
+  <Documentation>What cuts: a plane across the normal, a sphere around the origin, a cylinder around
+  the normal through it, or the zero of the function.</Documentation>
 </IntVectorProperty>
+<StringVectorProperty name="Function" command="SetFunction" number_of_elements="1"
+    default_values="x*x + y*y - 1">
+  <Documentation>Of x, y and z, in Python, with the functions of its module math.</Documentation>
+</StringVectorProperty>
 <DoubleVectorProperty name="Radius" command="SetRadius" number_of_elements="1" default_values="1">
   <DoubleRangeDomain name="range" min="0"/>
   <Documentation>Of the sphere or the cylinder, in units of length.</Documentation>
@@ -270,7 +277,7 @@ SHAPE = """
 <DoubleVectorProperty name="SliceDistance" command="SetSliceDistance" number_of_elements="1"
     default_values="0" panel_visibility="advanced">
   <DoubleRangeDomain name="range" min="0"/>
-  <Documentation>How far a sphere or a cylinder whose edges are collapsed may be from that of all
+  <Documentation>How far a slice that is no plane, and whose edges are collapsed, may be from that of all
   data, there and back, in units of length; 0: it keeps its place.</Documentation>
 </DoubleVectorProperty>
 """
@@ -286,6 +293,36 @@ INPUT = """
   <InputArrayDomain name="one_component" attribute_type="any" number_of_components="1"/>
 </InputProperty>
 """
+
+
+#: What a formula consists of.
+ARITHMETIC = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Load, ast.Constant,
+              ast.operator, ast.unaryop)
+
+
+def function_of(text):
+    """The function of x, y and z that an expression is."""
+    known = {name: each for name, each in vars(math).items() if not name.startswith("_")}
+    try:
+        tree = ast.parse(text.strip(), mode="eval")
+    except SyntaxError:
+        raise nestgrid.InvalidInput(f"the function is no expression: {text!r}") from None
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and node.id not in {"x", "y", "z", *known}:
+            raise nestgrid.InvalidInput(f"the function has {node.id!r}, but knows only x, y, z and math")
+        text_in_it = isinstance(node, ast.Constant) and not isinstance(node.value, (int, float))
+        if text_in_it or not isinstance(node, ARITHMETIC):
+            raise nestgrid.InvalidInput(f"the function is no formula of x, y and z: {text!r}")
+    code = compile(tree, "Function", "eval")
+
+    def function(x, y, z):
+        try:
+            return float(eval(code, {"__builtins__": {}, **known}, {"x": x, "y": y, "z": z}))
+        except (ArithmeticError, TypeError, ValueError) as error:
+            where = f"({x:g}, {y:g}, {z:g})"
+            raise nestgrid.InvalidInput(f"the function is no number at {where}: {error}") from None
+
+    return function
 
 
 def properties(*texts):
@@ -338,7 +375,7 @@ class Drawing(VTKPythonAlgorithmBase):
         self._values = []
         self._scale = {"scale": 1.0}
         self._plane = {"origin": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0)}
-        self._shape = {"kind": "plane", "radius": 1.0, "distance": 0.0}
+        self._shape = {"kind": "plane", "radius": 1.0, "distance": 0.0, "function": ""}
         self._surface_options = {"normals": True, "cap": False, "at_nodes": False, "cuts": None}
         self._elements = {"elements": False}  # told by triangles: for their outlines
         self._blend = {"blend": 1.0}
@@ -437,10 +474,13 @@ class Drawing(VTKPythonAlgorithmBase):
         self._set(self._scale, "scale", value)
 
     def SetShape(self, number):
-        self._set(self._shape, "kind", ("plane", "sphere", "cylinder")[number])
+        self._set(self._shape, "kind", ("plane", "sphere", "cylinder", "function")[number])
 
     def SetRadius(self, value):
         self._set(self._shape, "radius", value)
+
+    def SetFunction(self, text):
+        self._set(self._shape, "function", text)
 
     def SetSliceDistance(self, value):
         self._set(self._shape, "distance", value)
@@ -517,6 +557,8 @@ class Drawing(VTKPythonAlgorithmBase):
         kind = self._shape["kind"]
         shape = {"plane": (origin, normal), "sphere": (origin, radius)}
         shape["cylinder"] = (origin, normal, radius)
+        if kind == "function":
+            shape["function"] = function_of(self._shape["function"])
         options = self.coloured()
         if options.get("collapse") and kind != "plane" and self._shape["distance"] > 0:
             options["distance"] = self._shape["distance"]
