@@ -28,6 +28,7 @@ REASONS = {
     "j": "what is made for a field is kept with it, so that all calls are a series",
     "k": "the pointer tells the value, the place and the error",
     "l": "the field of the caller gives the values between its frames",
+    "m": "elements have no names outside the code that made them",
 }
 FRONT_ENDS = ["C++", "C, Fortran", "program", "page", "Python", "VTK", "ParaView"]
 # Of each feature one cell for each front end: a name, or the letter of a reason.
@@ -78,8 +79,8 @@ TABLE = {
         "caps": "cap cap --cap cap cap SetCap Cap",
         "vertices at nodes": "at_nodes at_nodes --at-nodes a at_nodes SetAtNodes AtNodes",
         "cuts on finest data": "Cuts finest_cuts --cuts a cuts SetFinestCuts Cuts",
-        "the element of a triangle": "elements elements --elements outlines elements SetElements a",
-        "places in elements": "reference reference a a a a a",
+        "the element of a triangle": "elements elements --elements outlines elements SetElements Outlines",
+        "places in elements": "reference reference m m m a m",
         "colours that follow the data": "refine_colours colour_tolerance --colour-tolerance a colour_tolerance SetProjection ColourTolerance",
         "threads": "Executor threads --threads e threads SetExecutor e",
         "work that is ended": "Watch progress h h h SetAbortExecute a",
