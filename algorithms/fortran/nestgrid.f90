@@ -250,6 +250,25 @@ module nestgrid
         integer(c_int64_t) :: open = 0_c_int64_t
     end type nestgrid_joined
 
+    type, bind(c) :: nestgrid_measures
+        integer(c_int64_t) :: triangles = 0_c_int64_t
+        real(c_double) :: area = 0.0_c_double
+        real(c_double) :: area_vector(3) = 0.0_c_double
+        real(c_double) :: volume = 0.0_c_double
+        real(c_double) :: flux = 0.0_c_double
+        type(c_ptr) :: integrals = c_null_ptr
+        integer(c_int) :: closed = 0_c_int
+    end type nestgrid_measures
+
+    type, bind(c) :: nestgrid_surface_measures
+        integer(c_size_t) :: size = 0_c_size_t
+        type(c_ptr) :: owner = c_null_ptr
+        type(nestgrid_measures) :: whole
+        integer(c_size_t) :: component_count = 0_c_size_t
+        type(c_ptr) :: components = c_null_ptr
+        type(c_ptr) :: component_of = c_null_ptr
+    end type nestgrid_surface_measures
+
     type, bind(c) :: nestgrid_level_function
         integer(c_size_t) :: size = 0_c_size_t
         type(c_ptr) :: self = c_null_ptr
@@ -404,6 +423,22 @@ module nestgrid
             import
             type(nestgrid_joined), intent(inout) :: joined
         end subroutine nestgrid_joined_free
+
+        integer(c_int) function nestgrid_measure_surface(surface, flux_from, out, message, &
+                message_size) bind(c, name="nestgrid_measure_surface")
+            import
+            type(nestgrid_surface), intent(in) :: surface
+            integer(c_int), value :: flux_from
+            type(nestgrid_surface_measures), intent(inout) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_measure_surface
+
+        subroutine nestgrid_surface_measures_free(measures) &
+            bind(c, name="nestgrid_surface_measures_free")
+            import
+            type(nestgrid_surface_measures), intent(inout) :: measures
+        end subroutine nestgrid_surface_measures_free
 
         subroutine nestgrid_surface_free(surface) bind(c, name="nestgrid_surface_free")
             import

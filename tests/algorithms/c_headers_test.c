@@ -9,6 +9,7 @@
 #include <nestgrid/algorithms/probe.h>
 #include <nestgrid/algorithms/ranks.h>
 #include <nestgrid/algorithms/slice.h>
+#include <nestgrid/algorithms/surface_measures.h>
 #include <nestgrid/nestgrid.h>
 
 int main(void) {

@@ -10,6 +10,7 @@
 #include <nestgrid/algorithms/isolines.h>
 #include <nestgrid/algorithms/probe.h>
 #include <nestgrid/algorithms/slice.h>
+#include <nestgrid/algorithms/surface_measures.h>
 
 #include "cut_grid.hpp"
 #include "sample_grids.hpp"
@@ -111,6 +112,37 @@ struct Asked {
     }
 };
 
+/// What is measured of the connected parts of a surface: the same on all ranks, but in their order.
+void put_measures(const nestgrid_surface& surface, Asked& asked, Answers& answers) {
+    nestgrid_surface_measures measures{};
+    measures.size = sizeof(measures);
+    if (!asked.is_done(
+            nestgrid_measure_surface(&surface, -1, &measures, asked.message.data(), 400))) {
+        return;
+    }
+    std::vector<std::vector<double>> rows;
+    const auto row_of = [](const nestgrid_measures& m) {
+        return std::vector{static_cast<double>(m.triangles),
+                           m.area,
+                           m.area_vector[0],
+                           m.area_vector[1],
+                           m.area_vector[2],
+                           m.volume,
+                           m.integrals[0],
+                           static_cast<double>(m.closed)};
+    };
+    for (std::size_t i = 0; i < measures.component_count; ++i) {
+        rows.push_back(row_of(measures.components[i]));
+    }
+    std::sort(rows.begin(), rows.end());
+    for (const auto& row : rows) answers.same.insert(answers.same.end(), row.begin(), row.end());
+    for (std::size_t t = 0; t < surface.simplex_count; ++t) {
+        EXPECT_LT(measures.component_of[t], measures.component_count);
+    }
+    answers.same.push_back(static_cast<double>(measures.whole.triangles));
+    nestgrid_surface_measures_free(&measures);
+}
+
 /// \param joins whether ranks number the vertices of their pieces
 void put_surface(nestgrid_surface& surface, Asked& asked, std::size_t call, bool joins,
                  Answers& answers) {
@@ -136,6 +168,7 @@ void put_surface(nestgrid_surface& surface, Asked& asked, std::size_t call, bool
     answers.same.insert(answers.same.end(), {surface.error_bound, surface.range_bound,
                                              static_cast<double>(surface.visited),
                                              static_cast<double>(surface.extracted)});
+    if (surface.dimension == 3 && joins) put_measures(surface, asked, answers);
     if (asked.options.ranks != nullptr && joins) {
         nestgrid_joined joined{};
         joined.size = sizeof(joined);

@@ -21,7 +21,6 @@ REASONS = {
     "c": "a file holds no such data",
     "d": "two-dimensional fields are not explored",
     "e": "always all threads",
-    "f": "the caller keeps its surfaces",
     "g": "by C++ only: it is a function of the caller's own types",
     "h": "by Ctrl-C, or by the next request",
     "i": "printed with every surface",
@@ -51,7 +50,7 @@ TABLE = {
         "data that jump": "DiscontinuousData a c c c a c",
         "values at points": "probe nestgrid_probe probe k probe b b",
         "edges of elements": "outlines elements --outlines outlines outlines SetOutlines Outlines",
-        "cracks, area, volume": "surface_report f i report report b b",
+        "cracks, area, volume": "surface_report nestgrid_measure_surface i report report b b",
         "measured errors": "measure_error nestgrid_measure --measure a measure a a",
     },
     "How finely": {
