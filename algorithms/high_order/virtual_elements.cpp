@@ -22,8 +22,8 @@ struct VirtualElements::Places {
 
 namespace {
 
-/// VirtualOptions::values of a drawing that looks at no polynomial.
-const HighOrderData::DrawnValues no_values{std::in_place};
+/// Those of a drawing that looks at no polynomial.
+const VirtualOptions no_leaf{.values = decltype(VirtualOptions::values)(std::in_place)};
 
 /// \param name of the tolerance \param of what the extent is
 void require_tolerance(double tolerance, const std::string& name, double extent,
@@ -56,7 +56,7 @@ VirtualElements::VirtualElements(std::shared_ptr<const HighOrderData> data,
                                  const VirtualOptions& options)
     : data_{std::move(data)},
       linear_{is_linear(*data_)},
-      leaves_{data_->gathered(linear_ ? no_values : options.values)},
+      leaves_{data_->gathered(linear_ ? no_leaf : options)},
       field_{data_->field, leaves_->field, options.tolerance},
       places_{places_within(options)},
       components_{field_.summary->components},

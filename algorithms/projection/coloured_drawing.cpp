@@ -163,10 +163,11 @@ Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
     });
 }
 
-/// What is drawn of polynomials: beside a slice, everything.
-engine::DrawnValues values_of(const SliceRequest& request, const IsosurfaceOptions& options) {
-    if (!request.functions.empty()) return std::nullopt;
-    return engine::values_at(request.isovalues, options.cap);
+/// What is drawn of polynomials.
+engine::DrawnParts parts_of(const SliceRequest& request, const IsosurfaceOptions& options) {
+    engine::DrawnParts parts = engine::zeros_of(request.functions, options.cap);
+    parts.values = engine::isosurfaces_at(request.isovalues, options.cap).values;
+    return parts;
 }
 
 }  // namespace
@@ -186,7 +187,10 @@ Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
         return engine::count_triangles(fine, {{&function}}, fine.criterion(), fine.bounds(), most,
                                        options, work.executor);
     };
-    if (auto drawn = engine::within_error<Slice>(prerolls, projection, work, 3, within, count)) {
+    const LevelFunction* const only = &function;
+    if (auto drawn =
+            engine::within_error<Slice>(prerolls, projection, work, 3, within, count,
+                                        engine::zeros_of(std::span(&only, 1), options.cap))) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
@@ -214,7 +218,7 @@ std::vector<Slice> detail::draw_slices(const Prerolls& prerolls, const SliceRequ
             return engine::slices(hierarchy, request, targets, criterion, bounds, options,
                                   work.executor);
         },
-        values_of(request, options));
+        parts_of(request, options));
 }
 
 std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const SliceRequest& request,
@@ -228,7 +232,7 @@ std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const Sli
                 return engine::count_triangles(hierarchy, request, criterion, bounds, most, options,
                                                work.executor);
             },
-            values_of(request, options));
+            parts_of(request, options));
     } catch (const engine::Cancelled&) {
         return std::nullopt;
     }

@@ -76,31 +76,43 @@ std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
 double range_of(const HighOrder& data) {
     // Bounds are the same at any tolerance.
     const VirtualRefinement coarsest = polynomials_at(
-        data, {}, std::numeric_limits<double>::infinity(), DrawnValues(std::in_place));
+        data, {}, std::numeric_limits<double>::infinity(), isosurfaces_at({}, false));
     return coarsest.bounds().greatest() - coarsest.bounds().least();
 }
 
-DrawnValues values_at(std::span<const double> isovalues, bool cap) {
-    DrawnValues values(std::in_place);
+DrawnParts isosurfaces_at(std::span<const double> isovalues, bool cap) {
+    DrawnParts parts;
+    parts.values.emplace();
     for (const double isovalue : isovalues) {
-        values->push_back({isovalue, cap ? std::numeric_limits<double>::infinity() : isovalue});
+        parts.values->push_back(
+            {isovalue, cap ? std::numeric_limits<double>::infinity() : isovalue});
     }
-    return values;
+    return parts;
+}
+
+DrawnParts zeros_of(std::span<const LevelFunction* const> functions, bool cap) {
+    DrawnParts parts;
+    parts.values.emplace();
+    parts.functions.assign(functions.begin(), functions.end());
+    parts.boundary = cap;
+    return parts;
 }
 
 VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
-                                 double tolerance, const DrawnValues& values) {
+                                 double tolerance, const DrawnParts& parts) {
     return {data,
             {.tolerance = std::min(tolerance, std::numeric_limits<double>::max()),
              .lens = projection.lens,
              .position_tolerance = projection.position_error,
-             .values = values}};
+             .values = parts.values,
+             .functions = parts.functions,
+             .boundary = parts.boundary}};
 }
 
 TriangleBudget find_tolerance(const HighOrder& data, const Projection& projection,
-                              const CountWithin& count, const DrawnValues& values) {
+                              const CountWithin& count, const DrawnParts& parts) {
     const auto at = [&](double tolerance, std::uint64_t most) {
-        return count(polynomials_at(data, projection, tolerance, values), most);
+        return count(polynomials_at(data, projection, tolerance, parts), most);
     };
     return least_threshold(at, range_of(data), projection.max_triangles,
                            data.least_tolerance(projection.position_error));

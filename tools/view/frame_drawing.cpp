@@ -38,11 +38,12 @@ auto FrameDrawing::with(double threshold, const Function& function) const {
     VirtualOptions options{.tolerance = std::max(threshold, data.least_tolerance(positions)),
                            .lens = request_.lens,
                            .position_tolerance = positions};
-    const std::optional<double>& isovalue = request_.isovalue;
-    if (isovalue && !plane_ && !request_.collapses()) {
+    options.values.emplace();
+    if (const std::optional<double>& isovalue = request_.isovalue) {
         const double greatest = request_.cap ? std::numeric_limits<double>::infinity() : *isovalue;
-        options.values.emplace({std::array{*isovalue, greatest}});
+        options.values->push_back({*isovalue, greatest});
     }
+    if (plane_) options.functions.push_back(&*plane_);
     const VirtualRefinement fine(data, options);
     const Hierarchy<double>& hierarchy = fine;
     return function(hierarchy, StoppedBy{fine.criterion(), fine.bounds()});
