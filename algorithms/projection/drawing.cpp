@@ -210,6 +210,19 @@ Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double iso
         const auto within = [&](const VirtualRefinement& fine) {
             return once(fine, fine.criterion(), fine.bounds());
         };
+        const auto collapse_edges = [&](Projected<Isosurface<3>>& drawn,
+                                        const VirtualRefinement& fine, double error) {
+            const Hierarchy<double>& hierarchy = fine;
+            drawn.collapsed = collapse(drawn.surface, hierarchy, isovalue, fine.bounds(),
+                                       {.error = error}, work.executor);
+            drawn.collapsed->hand_to(drawn, drawn.surface_error);
+        };
+        if (auto drawn = engine::collapsed_within_error<Isosurface<3>>(
+                prerolls, projection, work, 3,
+                [&](const VirtualRefinement& fine, double) { return within(fine); },
+                collapse_edges)) {
+            return *std::move(drawn);
+        }
         if (auto drawn =
                 engine::within_error<Isosurface<3>>(prerolls, projection, work, 3, within,
                                                     counting<3>(isovalues, options, work), parts)) {

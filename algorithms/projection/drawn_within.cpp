@@ -3,7 +3,9 @@
 #include <projection/drawn_within.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include <nestgrid/error.hpp>
@@ -98,11 +100,32 @@ DrawnParts zeros_of(std::span<const LevelFunction* const> functions, bool cap) {
     return parts;
 }
 
+void check_collapse(const HighOrder& data, const Projection& projection) {
+    if (data.geometry_degree() > 1) {
+        throw InvalidInput("edges of what is drawn of curved cells are not collapsed");
+    }
+    if (projection.max_triangles > 0 || projection.slice_distance > 0) {
+        throw InvalidInput(
+            "edges of data of higher degree are collapsed within an error, by no number of "
+            "triangles and no distance yet");
+    }
+    // Below it, leaves might not be halved as often as they must be.
+    const int more = greatest_depth - VirtualOptions{}.depth;
+    const double least = std::ldexp(data.least_tolerance(), -2 * more) / polynomial_share;
+    const double error = projection.least_threshold();
+    if (error >= least && std::isfinite(error)) return;
+    std::ostringstream text;
+    text << "edges of data of higher degree are collapsed within an error of at least " << least;
+    throw InvalidInput(text.str());
+}
+
 VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
-                                 double tolerance, const DrawnParts& parts) {
+                                 double tolerance, const DrawnParts& parts, int depth) {
     return {data,
             {.tolerance = std::min(tolerance, std::numeric_limits<double>::max()),
+             .depth = depth,
              .lens = projection.lens,
+             .region = projection.region,
              .position_tolerance = projection.position_error,
              .values = parts.values,
              .functions = parts.functions,

@@ -60,7 +60,8 @@ DrawnParts zeros_of(std::span<const LevelFunction* const> functions, bool cap);
 /// The polynomials within a tolerance, of which infinity is one, and as finely as the lens of the
 /// projection asks.
 VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
-                                 double tolerance, const DrawnParts& parts = {});
+                                 double tolerance, const DrawnParts& parts = {},
+                                 int depth = VirtualOptions{}.depth);
 
 /// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
 template <class Function>
@@ -119,6 +120,40 @@ std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
     work.begin("drawing");
     return Projected<Result>{draw(polynomials_at(*data, projection, search.threshold, parts)),
                              search};
+}
+
+/// The part of an error within which polynomials are drawn before edges are collapsed within the
+/// rest, by the data that are drawn.
+inline constexpr double polynomial_share = 0.25;
+inline constexpr int greatest_depth = 16;  ///< of VirtualOptions
+/// \throw InvalidInput where edges are not collapsed within what the projection asks for
+void check_collapse(const HighOrder& data, const Projection& projection);
+
+/// Draws a field of higher degree and collapses edges within the error that the projection asks
+/// for. Nothing where it asks for none, or where all leaves are straight and of degree 1.
+/// \param draw draw(polynomials, error of these)
+/// \param collapse collapse(drawn, polynomials, what is left of the error)
+template <class Result, class Draw, class Collapse>
+std::optional<Projected<Result>> collapsed_within_error(const Prerolls& prerolls,
+                                                        const Projection& projection,
+                                                        const Work& work, int dimension,
+                                                        const Draw& draw,
+                                                        const Collapse& collapse) {
+    if (!projection.collapse) return std::nullopt;
+    const auto data = polynomials_for(prerolls, projection, work);
+    if (data == nullptr) return std::nullopt;
+    work.on(prerolls.field()).facts().require_dimension(dimension);
+    check_collapse(*data, projection);
+    const double error = projection.least_threshold();
+    const double first = polynomial_share * error;
+    work.begin("drawing");
+    const VirtualRefinement fine = polynomials_at(*data, projection, first, {}, greatest_depth);
+    Projected<Result> drawn{draw(fine, first), {.threshold = error}};
+    if (drawn.cancelled) return drawn;
+    work.begin("collapsing");
+    collapse(drawn, fine, error - first);
+    drawn.error_bound += first + data->jump();
+    return drawn;
 }
 
 /// Calls draw(hierarchy, criterion, bounds) once, with a field of the dimension under the

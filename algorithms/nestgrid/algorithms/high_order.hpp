@@ -74,6 +74,9 @@ struct VirtualOptions {
     /// Elements stop only where they are as small as the lens asks, too, or at the depth limit. Its
     /// `finest` is positive.
     std::optional<LensRequest> lens{};
+    /// Elements in the region, or as near to it as three times their size, stop only within its
+    /// threshold, which is another tolerance, too.
+    std::optional<RegionRequest> region{};
     /// How far points of curved leaves may be from where they are drawn, in units of length; 0: the
     /// same share of the diameter of the domain as the tolerance is of the range of the data.
     double position_tolerance = 0;
