@@ -10,7 +10,8 @@
 
 #include <distances/closest_points.hpp>
 #include <distances/surface_points.hpp>
-#include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/polynomial_values.hpp>
 #include <nestgrid/algorithms/probe.hpp>
 #include <nestgrid/error.hpp>
 
@@ -125,8 +126,10 @@ Measured measure_values(const Surface<3>& surface, const Prerolls& prerolls, dou
                         std::size_t points, const Work& work) {
     Sums sums;
     engine::SurfacePoints some;  // so many that a walk is worth it
+    const std::shared_ptr<const HighOrder> data = prerolls.high_order(work);
     const auto look = [&] {
-        const ProbeResult probed = probe(prerolls, some.x, {}, work);
+        const ProbeResult probed =
+            data != nullptr ? probe(*data, some.x) : probe(prerolls, some.x, {}, work);
         for (std::size_t i = 0; i < some.x.size(); ++i) {
             if (!probed.found(i)) continue;
             sums.add(std::abs(probed.values[i * probed.components] - isovalue), some.area[i]);
@@ -145,14 +148,18 @@ Measured measure_values(const Surface<3>& surface, const Prerolls& prerolls, dou
     return sums.measured();
 }
 
+void require_measurable(const Prerolls& prerolls, double isovalue, std::size_t points) {
+    prerolls.field().facts().require_dimension(3);
+    if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
+    if (points == 0) throw InvalidInput("an error cannot be measured at no point");
+}
+
 }  // namespace
 
 MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn,
                             const Surface<3>& whole, double isovalue, std::size_t points,
                             const Work& work) {
-    prerolls.field().facts().require_dimension(3);
-    if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
-    if (points == 0) throw InvalidInput("an error cannot be measured at no point");
+    require_measurable(prerolls, isovalue, points);
     MeasuredError error;
     error.value = measure_values(drawn, prerolls, isovalue, points, work);
     error.distance = measure_distance(drawn, whole, points, work.executor, error);
@@ -162,8 +169,15 @@ MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn,
 
 MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
                             std::size_t points, const Work& work) {
+    Projection of_whole{.threshold = 0};
+    if (const auto data = prerolls.high_order(work)) {
+        require_measurable(prerolls, isovalue, points);
+        const double found = measure_values(drawn, prerolls, isovalue, points, work).greatest;
+        const double tenth = found > 0 ? found / 10 : default_error(*data);
+        of_whole = {.threshold = std::max(tenth, data->least_tolerance()), .indicator = "error"};
+    }
     const Isosurface<3> whole =
-        isosurface<3>(prerolls, isovalue, {.threshold = 0}, {.elements = false}, work);
+        isosurface<3>(prerolls, isovalue, of_whole, {.elements = false}, work);
     return measure_error(prerolls, drawn, whole.surface, isovalue, points, work);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <nestgrid/detail/coarse_boundary.hpp>
 #include <nestgrid/error.hpp>
 
 namespace nestgrid {
@@ -31,31 +32,31 @@ const Hierarchy<Real>& checked(const Hierarchy<Real>& base) {
 
 }  // namespace
 
-HighOrderData::HighOrderData(const Hierarchy<float>& single)
+HighOrderData::HighOrderData(const Hierarchy<float>& single, const Executor& executor)
     : widened{std::in_place, checked(single), 0},
       base{&*widened},
       walk{*base},
       epoch{base->epoch()},
-      field{LeafField(*base), walk, epoch} {
-    look_at_places();
+      field{LeafField(*base), walk, epoch, executor} {
+    look_at_places(executor);
 }
 
-HighOrderData::HighOrderData(const Hierarchy<double>& from)
+HighOrderData::HighOrderData(const Hierarchy<double>& from, const Executor& executor)
     : base{&checked(from)},
       walk{*base},
       epoch{base->epoch()},
-      field{LeafField(*base), walk, epoch} {
-    look_at_places();
+      field{LeafField(*base), walk, epoch, executor} {
+    look_at_places(executor);
 }
 
-void HighOrderData::look_at_places() {
+void HighOrderData::look_at_places(const Executor& executor) {
     if (!base->offers(Feature::geometry_degree)) return;
     bool curved = false;
     walk.for_each([&](Task* task, std::span<const BaseElement> way) {
         const Member& leaf = *way.back().member;
         curved |= leaf.rule == nullptr && base->geometry_degree(task, leaf.element) != 1;
     });
-    if (curved) places.emplace(LeafPlaces(*base), walk, epoch);
+    if (curved) places.emplace(LeafPlaces(*base), walk, epoch, executor);
 }
 
 /// The same share of the diameter of the domain as the tolerance is of the range of the data.
@@ -85,14 +86,28 @@ GatheredLeaves HighOrderData::gather(const LeafChoice::Chooses& chooses,
 
 namespace {
 
-/// Whether leaves that some values are drawn in are among those of others.
-bool covers(const HighOrderData::DrawnValues& kept, const HighOrderData::DrawnValues& values) {
-    if (!kept || !values) return !kept;
-    return std::all_of(values->begin(), values->end(), [&](const auto& range) {
-        return std::any_of(kept->begin(), kept->end(), [&](const auto& around) {
-            return around[0] <= range[0] && range[1] <= around[1];
-        });
-    });
+/// Whether all of some leaves are among those that are kept.
+bool covers(const std::vector<bool>& kept, const std::vector<bool>& leaves) {
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        if (leaves[i] && !kept[i]) return false;
+    }
+    return true;
+}
+
+/// Faces of the last element on the way that are on the boundary.
+/// \param coarse those of the coarse elements
+unsigned boundary_of(std::span<const BaseElement> way, std::span<const std::uint8_t> coarse) {
+    unsigned faces = coarse[way[0].number];
+    for (std::size_t j = 1; j < way.size() && faces != 0; ++j) {
+        const Child& child = way[j - 1].member->rule->children[way[j].number];
+        unsigned own = 0;
+        for (std::size_t f = 0; f < topology(child.shape).faces; ++f) {
+            const std::uint8_t around = child.parent_face[f];
+            if (around != no_face) own |= (faces >> around & 1U) << f;
+        }
+        faces = own;
+    }
+    return faces;
 }
 
 }  // namespace
@@ -103,23 +118,83 @@ GatheredLeaves HighOrderData::gather_none() const {
     return none;
 }
 
-std::shared_ptr<const GatheredLeaves> HighOrderData::gathered(const DrawnValues& values) const {
-    if (values && values->empty()) return std::make_shared<const GatheredLeaves>(gather_none());
-    const std::lock_guard lock(gathering_);
-    if (last_ && covers(last_values_, values)) return last_;
-    last_.reset();
-    const auto passes = [&](std::size_t leaf, NodeKey) {
-        return std::any_of(values->begin(), values->end(), [&](const auto& range) {
-            return field.summary.may_take(leaf, range[0], range[1]);
-        });
-    };
-    bool some = !values;
-    for (std::size_t leaf = 0; !some && leaf < field.summary.ranges.size(); ++leaf) {
-        some = passes(leaf, 0);
+std::vector<bool> HighOrderData::looked_at(const VirtualOptions& options) const {
+    const LeafSummary& summary = field.summary;
+    std::vector<bool> leaves(summary.ranges.size());
+    for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+        leaves[leaf] = std::any_of(
+            options.values->begin(), options.values->end(),
+            [&](const auto& range) { return summary.may_take(leaf, range[0], range[1]); });
     }
-    const LeafChoice::Chooses chooses = values ? passes : LeafChoice::Chooses();
+    if (options.boundary || !options.functions.empty()) look_at_places(options, leaves);
+    return leaves;
+}
+
+/// Adds the leaves that functions pass through, and those on the boundary.
+void HighOrderData::look_at_places(const VirtualOptions& options, std::vector<bool>& leaves) const {
+    const PositionFunctions functions(options.functions, *base);
+    std::vector<std::uint8_t> coarse;
+    if (options.boundary && !base->offers(Feature::boundary_faces)) {
+        coarse = nestgrid::detail::coarse_boundary(*base);
+    }
+    const auto on_boundary = [&](Task* task, std::span<const BaseElement> way) {
+        if (!options.boundary) return false;
+        if (!coarse.empty()) return boundary_of(way, coarse) != 0;
+        unsigned faces = 0;
+        const BaseElement& e = way.back();
+        base->corners(task, e.member->element, e.shape->corners, nullptr, nullptr, &faces);
+        return faces != 0;
+    };
+    const auto passes = [&](std::size_t leaf, const BaseElement& e) {
+        std::array<Point, max_corners> x = e.x;
+        double beyond = e.moved;
+        if (places) {
+            beyond = static_cast<double>(places->summary.beyond_hull[leaf]);
+            for (std::size_t k = 0; k < e.shape->corners; ++k) {
+                const double* const at = places->nodes.values(e.key[k]);
+                x[k] = {at[0], at[1], at[2]};
+            }
+        }
+        const auto corners = std::span<const Point>(x).first(e.shape->corners);
+        for (std::size_t f = 0; f < functions.count(); ++f) {
+            std::array<double, max_corners> at;
+            for (std::size_t k = 0; k < corners.size(); ++k) at[k] = functions.at<double>(f, x[k]);
+            const auto [least, greatest] =
+                std::minmax_element(at.begin(), at.begin() + corners.size());
+            const auto range = functions.range(f, corners, {*least, *greatest}, at[0], beyond);
+            // A drawing rounds what is this near to 0.
+            const double near = 4 * functions.tolerance(f);
+            if (range.least <= near && range.greatest >= -near) return true;
+        }
+        return false;
+    };
+    std::size_t number = 0;
+    walk.for_each(
+        [&](Task* task, std::span<const BaseElement> way) {
+            const BaseElement& e = way.back();
+            if (e.member->rule != nullptr) return;
+            if (!leaves[number]) leaves[number] = on_boundary(task, way) || passes(number, e);
+            ++number;
+        },
+        BaseWalk::Positions::yes);
+}
+
+std::shared_ptr<const GatheredLeaves> HighOrderData::gathered(const VirtualOptions& options) const {
+    const bool nothing =
+        options.values && options.values->empty() && options.functions.empty() && !options.boundary;
+    if (nothing) return std::make_shared<const GatheredLeaves>(gather_none());
+    std::optional<std::vector<bool>> leaves;
+    if (options.values) leaves = looked_at(options);
+    const std::lock_guard lock(gathering_);
+    const bool some = !leaves || std::find(leaves->begin(), leaves->end(), true) != leaves->end();
+    if (last_ && (!last_leaves_ || (some && leaves && covers(*last_leaves_, *leaves)))) {
+        return last_;
+    }
+    last_.reset();
+    LeafChoice::Chooses chooses;
+    if (leaves) chooses = [&](std::size_t leaf, const BaseElement&) { return (*leaves)[leaf]; };
     last_ = std::make_shared<const GatheredLeaves>(some ? gather(chooses) : gather_none());
-    last_values_ = values;
+    last_leaves_ = std::move(leaves);
     return last_;
 }
 
@@ -156,10 +231,10 @@ const VirtualElement& element_of(const Handle& handle) {
 
 }  // namespace engine
 
-HighOrder::HighOrder(const Hierarchy<float>& base)
-    : data_{std::make_shared<const engine::HighOrderData>(base)} {}
-HighOrder::HighOrder(const Hierarchy<double>& base)
-    : data_{std::make_shared<const engine::HighOrderData>(base)} {}
+HighOrder::HighOrder(const Hierarchy<float>& base, const Executor& executor)
+    : data_{std::make_shared<const engine::HighOrderData>(base, executor)} {}
+HighOrder::HighOrder(const Hierarchy<double>& base, const Executor& executor)
+    : data_{std::make_shared<const engine::HighOrderData>(base, executor)} {}
 
 int HighOrder::greatest_degree() const { return data_->field.summary.greatest_degree; }
 int HighOrder::geometry_degree() const {

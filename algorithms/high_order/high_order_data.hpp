@@ -21,8 +21,9 @@ struct PolynomialFacts {
     LeafSummary summary;
     RealNodes nodes;
 
-    PolynomialFacts(const LeafFunction& function, const BaseWalk& walk, std::uint64_t epoch)
-        : summary{function}, nodes{epoch, function, walk, summary} {}
+    PolynomialFacts(const LeafFunction& function, const BaseWalk& walk, std::uint64_t epoch,
+                    const Executor& executor)
+        : summary{function}, nodes{epoch, function, walk, summary, executor} {}
     std::size_t memory_bytes() const { return summary.memory_bytes() + nodes.memory_bytes(); }
 };
 
@@ -39,8 +40,6 @@ struct GatheredLeaves {
 
 /// A solution: the hierarchy, facts of its leaves, and the leaves gathered last.
 struct HighOrderData {
-    using DrawnValues = decltype(VirtualOptions::values);
-
     std::optional<WidenedHierarchy<float>> widened;  // where the values are float
     const Hierarchy<double>* base;
     BaseWalk walk;
@@ -48,14 +47,14 @@ struct HighOrderData {
     PolynomialFacts field;
     std::optional<PolynomialFacts> places;  // where a leaf is curved
 
-    explicit HighOrderData(const Hierarchy<float>& single);
-    explicit HighOrderData(const Hierarchy<double>& base);
+    HighOrderData(const Hierarchy<float>& single, const Executor& executor);
+    HighOrderData(const Hierarchy<double>& base, const Executor& executor);
 
     /// The tolerance of positions beside one of the data that asks for none.
     double default_position_tolerance(double tolerance) const;
-    /// The leaves that VirtualOptions::values asks for.
+    /// The leaves that the options ask for.
     /// \throw GridError where the hierarchy has changed, or as HighOrder
-    std::shared_ptr<const GatheredLeaves> gathered(const DrawnValues& values) const;
+    std::shared_ptr<const GatheredLeaves> gathered(const VirtualOptions& options) const;
     /// Polynomials, and records unless these are not needed, of the leaves that `chooses` returns
     /// true for; not kept for another drawing.
     GatheredLeaves gather(const LeafChoice::Chooses& chooses,
@@ -65,13 +64,16 @@ struct HighOrderData {
     std::size_t memory_bytes() const;
 
 private:
-    void look_at_places();
+    void look_at_places(const Executor& executor);
     GatheredLeaves gather_none() const;
+    /// A leaf a bit, in the order of the walk.
+    std::vector<bool> looked_at(const VirtualOptions& options) const;
+    void look_at_places(const VirtualOptions& options, std::vector<bool>& leaves) const;
 
     mutable std::once_flag corners_made_;
     mutable std::optional<LeafCorners> corners_;
     mutable std::mutex gathering_;
-    mutable DrawnValues last_values_;
+    mutable std::optional<std::vector<bool>> last_leaves_;  // nothing: all
     mutable std::shared_ptr<const GatheredLeaves> last_;
 };
 

@@ -7,39 +7,12 @@
 
 namespace nestgrid::engine {
 
-void look_around(std::span<const BaseElement> way, std::span<const Place> points,
-                 const LookAround& function) {
-    std::vector<std::array<Place, 4>> seen(way.size());  // from each element on the way
-    const std::size_t last = way.size() - 1;
-    std::copy(points.begin(), points.end(), seen[last].begin());
-    for (std::size_t j = last; j > 0; --j) {
-        const BaseElement& father = way[j - 1];
-        const Rule& rule = *father.member->rule;
-        const Child& child = rule.children[way[j].number];
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            seen[j - 1][i] =
-                father.shape->in_father(rule, child, seen[j][i], static_cast<int>(last - j));
-        }
-    }
-    for (std::size_t j = 0; j <= last; ++j) {
-        const BaseElement& e = way[j];
-        const int level = static_cast<int>(last - j);
-        FaceMask faces = ~FaceMask{0};
-        for (std::size_t i = 0; i < points.size(); ++i)
-            faces &= e.shape->faces_at(seen[j][i], level);
-        const int part = e.shape->part_in(faces);
-        if (part < 0) continue;
-        const auto at = std::span<const Place>(seen[j]).first(points.size());
-        if (function(e, static_cast<std::size_t>(part), at, level)) return;
-    }
-}
-
 LeafChoice::LeafChoice(const BaseWalk& walk, const Chooses& chooses, Needs needs) : all_{!chooses} {
     std::size_t number = 0;
     walk.for_each([&](Task*, std::span<const BaseElement> way) {
         const BaseElement& e = way.back();
         if (e.member->rule != nullptr) return;
-        if (!all_ && !chooses(number++, e.path)) return;
+        if (!all_ && !chooses(number++, e)) return;
         number_.insert(e.path, static_cast<std::uint32_t>(number_.size()));
         if (!all_ && needs == Needs::records) mark_parts(way);
     });
@@ -48,20 +21,16 @@ LeafChoice::LeafChoice(const BaseWalk& walk, const Chooses& chooses, Needs needs
 
 /// Marks where the records of the last element on the way, a leaf, may lie.
 void LeafChoice::mark_parts(std::span<const BaseElement> way) {
-    const ShapeParts& shape = *way.back().shape;
-    for (const ShapePart& part : shape.parts) {
-        std::array<Place, 3> frame;
-        const std::size_t count = frame_size(part);
-        for (std::size_t i = 0; i < count; ++i) frame[i] = shape.reference_corner(part.corner[i]);
-        look_around(way, std::span<const Place>(frame).first(count),
-                    [&](const BaseElement& e, std::size_t number, auto, int) {
-                        const ShapePart& around = e.shape->parts[number];
-                        if (!parts_.insert(part_key(e.key, around), none).second) return false;
-                        for (std::size_t i = 0; i < around.count; ++i) {
-                            corners_.push_back(e.key[around.corner[i]]);
-                        }
-                        return false;
-                    });
+    for (std::size_t part = 0; part < way.back().shape->parts.size(); ++part) {
+        look_around(way, part, [&](std::size_t level, std::size_t number) {
+            const BaseElement& e = way[level];
+            const ShapePart& around = e.shape->parts[number];
+            if (!parts_.insert(part_keys(e.key, *e.shape)[number], none).second) return false;
+            for (std::size_t i = 0; i < around.count; ++i) {
+                corners_.push_back(e.key[around.corner[i]]);
+            }
+            return false;
+        });
     }
 }
 

@@ -12,20 +12,10 @@
 
 namespace nestgrid::engine {
 
-/// Calls a function with the elements on the way that have an edge or face with some points in it,
-/// from the coarse one down, until it returns true.
-/// \param points in the last element on the way, at most 4
-/// \param function called with the element, the number of its edge or face, the points in units of
-///        2^-level of the element, and that level
-using LookAround = std::function<bool(const BaseElement& e, std::size_t part,
-                                      std::span<const Place> at, int level)>;
-void look_around(std::span<const BaseElement> way, std::span<const Place> points,
-                 const LookAround& function);
-
 class LeafChoice {
 public:
     /// \param number of a leaf in the order of the walk
-    using Chooses = std::function<bool(std::size_t number, NodeKey path)>;
+    using Chooses = std::function<bool(std::size_t number, const BaseElement& leaf)>;
     enum class Needs { records, polynomials };
     static constexpr std::uint32_t none = 0xFFFFFFFFU;
 

@@ -40,8 +40,8 @@ void VirtualElements::look_at_parts(const VirtualElement& e, const Drawn& drawn,
     const LeafPolynomial& leaf = records.leaves()[e.leaf];
     const ShapeParts& in_leaf = leaf.parts();
     const ShapeParts& shape = *e.state->shape;
-    const bool flat_inside = is_flat(drawn, looked.facts.beta, e.level, [&] {
-        return lens_->is_fine(leaf.number, e.places(), e.level);
+    const bool flat_inside = is_flat(drawn, looked.facts.beta, e.level, [&](const auto& asks) {
+        return asks(leaf.number, e.places(), e.level);
     });
     const bool flat_parts = flat_inside && in_leaf.is_box;
     std::array<FaceMask, max_corners> faces;
@@ -75,13 +75,13 @@ void VirtualElements::look_at_parts(const VirtualElement& e, const Drawn& drawn,
             looked.facts.least = std::min(looked.facts.least, facts.least);
             looked.facts.greatest = std::max(looked.facts.greatest, facts.greatest);
             flat = is_flat(drawn, facts.beta, e.level + on.shift,
-                           [&] { return lens_->is_fine(records.in_owner(on)); });
+                           [&](const auto& asks) { return asks(records.in_owner(on)); });
         } else if (!flat) {
             const double beta = norm_of(own.size(), [&](std::size_t c) {
                 return ElementNets::beta_on_part(e, own[c], part);
             });
             flat = is_flat(drawn, beta, e.level,
-                           [&] { return lens_->is_fine(leaf.number, of_part, e.level); });
+                           [&](const auto& asks) { return asks(leaf.number, of_part, e.level); });
         }
         if (flat && part.count > 2) {
             part_around[flat_faces] = number;
@@ -103,9 +103,12 @@ void VirtualElements::look_at_error(OpenTask& task, const VirtualElement& e, con
     const std::size_t corners = e.state->shape->corners;
     const std::vector<ElementNets>& makers = task.nets_of(*drawn.records);
     const bool one = own.size() == 1;
+    const bool near = region_ != nullptr && drawn.in_region < drawn.tolerance &&
+                      region_->has(drawn.records->leaves()[e.leaf].number, e.places(), e.level);
+    const double allowed = near ? drawn.in_region : drawn.tolerance;
     const double error = norm_of(own.size(), [&](std::size_t c) {
         return makers[c].drawn_error(e, own[c], looked.beta[c], u.subspan(c * corners, corners),
-                                     one ? drawn.tolerance - drawn.rounding : 0);
+                                     one ? allowed - drawn.rounding : 0);
     });
     if (!one) {
         looked.corner_error = norm_of(own.size(), [&](std::size_t c) {
@@ -114,8 +117,7 @@ void VirtualElements::look_at_error(OpenTask& task, const VirtualElement& e, con
     }
     const auto jump = static_cast<double>(drawn.records->leaves()[e.leaf].jump);
     looked.error = error + drawn.rounding;
-    looked.exceeds =
-        static_cast<double>(detail::float_above(looked.error)) > drawn.tolerance + jump;
+    looked.exceeds = static_cast<double>(detail::float_above(looked.error)) > allowed + jump;
 }
 
 /// Values of all components at a new node of an element below a leaf.

@@ -38,124 +38,70 @@ std::array<std::uint8_t, 3> frame_corners(const CornerKeys& keys, const ShapePar
 
 }  // namespace
 
-double* NetStore::add(std::size_t count, std::uint32_t needed_until, std::uint32_t now) {
+double* NetStore::add(std::size_t count) {
     if (count > left_) {
-        std::erase_if(blocks_, [&](const Block& block) {
-            const bool goes = block.needed_until < now;
-            if (goes) size_ -= block.size;
-            return goes;
-        });
         constexpr std::size_t most = std::size_t{1} << 14U;
         left_ = std::max(count, std::min(size_, most));
-        blocks_.push_back({std::make_unique_for_overwrite<double[]>(left_), left_, 0});
+        blocks_.push_back({std::make_unique_for_overwrite<double[]>(left_), left_});
         size_ += left_;
     }
-    Block& block = blocks_.back();
-    block.needed_until = std::max(block.needed_until, needed_until);
-    double* const added = block.room.get() + (block.size - left_);
+    double* const added = blocks_.back().room.get() + (blocks_.back().size - left_);
     left_ -= count;
     return added;
 }
 
-LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk)
-    : components_{function.components()}, drawn_{function.drawn()} {
-    take_leaves(function, walk, nullptr);
+void LeafRecords::claim(const LeafFunction& function, Task* task,
+                        std::span<const BaseElement> way) {
+    const auto number = static_cast<std::uint32_t>(leaves_.size());
+    claim_parts(function, task, way, nullptr, number);
+    LeafPolynomial& leaf = leaves_.emplace_back();
+    leaf.number = number;
+    leaf.shape = way.back().shape->shape;
+    leaf.degree = static_cast<std::uint8_t>(degree_of(function, task, way));
 }
 
-/// Calls a function with the owners of the records on a leaf.
-template <class Function>
-void LeafRecords::for_each_owner(const LeafPolynomial& leaf, const Function& function) const {
-    for (std::size_t part = 0; part < leaf.parts().parts.size(); ++part) {
-        const std::int32_t record = of_part_[leaf.first + part].record;
-        function(records_[static_cast<std::size_t>(record)].leaf);
-    }
-}
-
-void LeafRecords::read_all(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary,
-                           const std::function<void(std::uint32_t leaf)>& ready) {
-    finish();
-    std::vector<std::uint32_t> needed_until(leaves_.size());
-    std::vector<std::array<std::uint32_t, 2>> late;  // when a leaf is ready, if not when it is read
-    for (const LeafPolynomial& leaf : leaves_) {
-        std::uint32_t when = leaf.number;
-        for_each_owner(leaf, [&](std::uint32_t owner) { when = std::max(when, owner); });
-        const auto need = [&](std::uint32_t of) {
-            needed_until[of] = std::max(needed_until[of], when);
-        };
-        need(leaf.number);
-        for_each_owner(leaf, need);
-        if (when != leaf.number) late.push_back({when, leaf.number});
-    }
-    std::sort(late.begin(), late.end());
-    auto next = late.begin();
-    std::vector<bool> waits(leaves_.size());
-    for (const auto& [when, leaf] : late) waits[leaf] = true;
-    std::uint32_t number = 0;
-    walk.for_each([&](Task* task, std::span<const BaseElement> way) {
-        if (way.back().member->rule != nullptr) return;
-        LeafPolynomial& leaf = leaves_[number];
-        take_polynomial(function, task, way, leaf, needed_until[number]);
-        summary.greatest_degree = std::max(summary.greatest_degree, int{leaf.degree});
-        const std::size_t size = net_size(leaf.degree, leaf.factors());
-        for (std::size_t c = 0; c < components_; ++c) {
-            const auto [least, greatest] = std::minmax_element(net(leaf, c), net(leaf, c) + size);
-            summary.least[c] = std::min(summary.least[c], *least);
-            summary.greatest[c] = std::max(summary.greatest[c], *greatest);
-        }
-        if (!waits[number]) ready(number);
-        for (; next != late.end() && (*next)[0] == number; ++next) ready((*next)[1]);
-        ++number;
-    });
+void LeafRecords::end_claims() {
+    leaves_.shrink_to_fit();
+    records_.shrink_to_fit();
 }
 
 LeafRecords::LeafRecords(const LeafFunction& function, const BaseWalk& walk,
                          const LeafChoice& choice, const LeafSummary& summary)
     : components_{function.components()}, drawn_{function.drawn()} {
     if (choice.size() == 0) return;
-    take_leaves(function, walk, &choice);
-    for (LeafPolynomial& leaf : leaves_) leaf.jump = summary.jumps[leaf.number];
-    finish();
-}
-
-/// Takes leaves that are looked at and owners, and finds the records of the first ones.
-/// \param choice null: all leaves, without polynomials
-void LeafRecords::take_leaves(const LeafFunction& function, const BaseWalk& walk,
-                              const LeafChoice* choice) {
+    leaves_.resize(choice.size());
+    if (!choice.all()) record_of_ = choice.parts();
     std::uint32_t number = 0;
-    if (choice != nullptr) {
-        leaves_.resize(choice->size());
-        if (!choice->all()) record_of_ = choice->parts();
-    }
-    const auto chosen = [&](const BaseElement& e) {
-        if (choice == nullptr) return number;
-        const std::uint32_t* const at = choice->find(e.path);
-        return at == nullptr ? LeafChoice::none : *at;
-    };
     walk.for_each([&](Task* task, std::span<const BaseElement> way) {
         const BaseElement& e = way.back();
         if (e.member->rule != nullptr) return;
-        const std::uint32_t own = chosen(e);
-        const auto index =
-            own == LeafChoice::none ? static_cast<std::uint32_t>(leaves_.size()) : own;
-        const bool owns = claim_parts(function, task, way, choice, index);
-        if (owns || own != LeafChoice::none) {
-            if (index >= leaves_.size()) leaves_.emplace_back();
+        const std::uint32_t* const own = choice.find(e.path);
+        const auto index = own == nullptr ? static_cast<std::uint32_t>(leaves_.size()) : *own;
+        const bool owns = claim_parts(function, task, way, &choice, index);
+        if (owns || own != nullptr) {
+            if (own == nullptr) leaves_.emplace_back();
             LeafPolynomial& leaf = leaves_[index];
             leaf.number = number;
             leaf.shape = e.shape->shape;
             leaf.degree = static_cast<std::uint8_t>(degree_of(function, task, way));
-            if (choice != nullptr) take_polynomial(function, task, way, leaf);
+            read(function, task, way, index, nets_);
+            leaf.jump = summary.jumps[number];
         }
         ++number;
     });
-    if (record_of_.size() == 0) return;
-    number = 0;
-    walk.for_each([&](Task*, std::span<const BaseElement> way) {
-        if (way.back().member->rule != nullptr) return;
-        const std::uint32_t own = chosen(way.back());
-        if (own != LeafChoice::none) add_parts(way, leaves_[own]);
-        ++number;
-    });
+    if (record_of_.size() > 0) {
+        RecordSearch search(*this);
+        walk.for_each([&](Task*, std::span<const BaseElement> way) {
+            if (way.back().member->rule != nullptr) return;
+            const std::uint32_t* const own = choice.find(way.back().path);
+            if (own != nullptr) add_parts(search, way, leaves_[*own]);
+        });
+    }
+    end_claims();
+    maps_.shrink_to_fit();
+    of_part_.shrink_to_fit();
+    record_of_ = {};
+    map_number_ = {};
 }
 
 /// \throw GridError where a degree is not 1 to 8
@@ -177,11 +123,12 @@ bool LeafRecords::claim_parts(const LeafFunction& function, Task* task,
     if (!all && !choice->may_have_record(e)) return false;
     int degree = 0;
     bool owns = false;
+    const PartKeys keys = part_keys(e.key, *e.shape);
+    for (std::size_t p = 0; p < e.shape->parts.size(); ++p) record_of_.prefetch(keys[p]);
     for (std::size_t p = 0; p < e.shape->parts.size(); ++p) {
         const ShapePart& part = e.shape->parts[p];
-        const NodeKey key = part_key(e.key, part);
         std::uint32_t* const number =
-            all ? record_of_.insert(key, LeafChoice::none).first : record_of_.find(key);
+            all ? record_of_.insert(keys[p], LeafChoice::none).first : record_of_.find(keys[p]);
         if (number == nullptr) continue;
         if (degree == 0) degree = degree_of(function, task, way);
         if (*number == LeafChoice::none) {
@@ -197,11 +144,10 @@ bool LeafRecords::claim_parts(const LeafFunction& function, Task* task,
     return owns;
 }
 
-/// Takes the polynomial of the last element on the way.
-void LeafRecords::take_polynomial(const LeafFunction& function, Task* task,
-                                  std::span<const BaseElement> way, LeafPolynomial& leaf,
-                                  std::uint32_t needed_until) {
+void LeafRecords::read(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
+                       std::uint32_t number, NetStore& room) {
     const BaseElement& e = way.back();
+    LeafPolynomial& leaf = leaves_[number];
     const int degree = leaf.degree;
     const Factors& factors = e.shape->factors;
     thread_local std::map<std::pair<Shape, int>, std::vector<Point>> all_points;
@@ -213,7 +159,7 @@ void LeafRecords::take_polynomial(const LeafFunction& function, Task* task,
     thread_local std::vector<double> values;
     values.resize(points.size() * components_);
     function.evaluate(task, e.member->element, points, values);
-    double* own = nets_.add(components_ * leaf.size(), needed_until, leaf.number);
+    double* own = room.add(components_ * leaf.size());
     leaf.net = own;
     double jump = 0;
     for (std::size_t c = 0; c < components_; ++c, own += leaf.size()) {
@@ -233,14 +179,15 @@ void LeafRecords::take_polynomial(const LeafFunction& function, Task* task,
 }
 
 /// Finds the records of the last element on the way, a leaf.
-void LeafRecords::add_parts(std::span<const BaseElement> way, LeafPolynomial& leaf) {
+void LeafRecords::add_parts(RecordSearch& search, std::span<const BaseElement> way,
+                            LeafPolynomial& leaf) {
     const ShapeParts& shape = leaf.parts();
     leaf.first = static_cast<std::uint32_t>(of_part_.size());
-    for (const ShapePart& part : shape.parts) {
-        const std::array<Place, 4> corners = corners_of(shape, part);
+    for (std::size_t p = 0; p < shape.parts.size(); ++p) {
+        const std::array<Place, 4> corners = corners_of(shape, shape.parts[p]);
         // The frame of a quadrilateral is corner 0 and its two neighbours.
-        const auto frame = std::span(corners).first(frame_size(part));
-        const OnRecord on = around(way, frame);
+        const auto frame = std::span(corners).first(frame_size(shape.parts[p]));
+        const OnRecord on = search.around(way, p, frame);
         const PartFrame own = frame_between(frame);
         RecordMap map;
         map.shift = static_cast<std::uint8_t>(on.shift);
@@ -263,23 +210,61 @@ void LeafRecords::add_parts(std::span<const BaseElement> way, LeafPolynomial& le
     }
 }
 
-/// Looks for the largest edge or face of a leaf around, from the coarse element down.
-OnRecord LeafRecords::around(std::span<const BaseElement> way,
-                             std::span<const Place> points) const {
-    OnRecord on;
-    const auto finds = [&](const BaseElement& e, std::size_t number, std::span<const Place> at,
-                           int level) {
-        const ShapePart& part = e.shape->parts[number];
-        const NodeKey key = part_key(e.key, part);
-        const std::uint32_t* const record = record_of_.find(key);
-        if (record == nullptr || *record == LeafChoice::none) return false;
-        const std::array<Place, 3> corners = places_of(*e.shape, frame_corners(e.key, part));
-        const PartFrame frame = frame_between(std::span(corners).first(frame_size(part)));
-        on = {static_cast<std::int32_t>(*record), level, level, {}, points.size()};
-        for (std::size_t i = 0; i < at.size(); ++i) on.at[i] = frame(at[i], level);
-        return true;
-    };
-    look_around(way, points, finds);
+/// Looks from the coarse element down. What is found for parts of fathers serves all children.
+auto RecordSearch::find(std::span<const BaseElement> way, PartOrCorner of) -> Found {
+    const BaseElement& e = way.back();
+    const bool is_part = of < e.shape->parts.size();
+    const std::size_t level = way.size() - 1;
+    if (is_part) {
+        if (known_.size() <= level) known_.resize(level + 1);
+        Known& known = known_[level];
+        if (known.path != e.path) {
+            known = {e.path, part_keys(e.key, *e.shape), {}};
+            for (std::size_t p = 0; p < e.shape->parts.size(); ++p) {
+                records_->record_of_.prefetch(known.key[p]);
+            }
+        }
+        if (known.part[of].known) return known.part[of];
+    }
+    Found found;
+    const int around = e.in_father == nullptr ? ShapeParts::inside : e.in_father->around[of];
+    if (around != ShapeParts::inside) {
+        found = find(way.first(level), static_cast<PartOrCorner>(around));
+    }
+    if (!is_part) return found;
+    if (found.record == none) {
+        const std::uint32_t* const record = records_->record_of_.find(known_[level].key[of]);
+        if (record != nullptr && *record != LeafChoice::none) {
+            found = {static_cast<std::int32_t>(*record), static_cast<std::uint32_t>(level),
+                     static_cast<std::uint8_t>(of)};
+        }
+    }
+    found.known = true;
+    known_[level].part[of] = found;
+    return found;
+}
+
+std::uint32_t RecordSearch::owner(std::span<const BaseElement> way, std::size_t part) {
+    return records_->records_[static_cast<std::size_t>(find(way, part).record)].leaf;
+}
+
+OnRecord RecordSearch::around(std::span<const BaseElement> way, PartOrCorner of,
+                              std::span<const Place> points) {
+    const Found found = find(way, of);
+    if (found.record == none) return {};
+    const BaseElement& e = way[found.level];
+    const int level = static_cast<int>(way.size() - 1 - found.level);
+    const ShapePart& part = e.shape->parts[found.part];
+    const std::array<Place, 3> corners = places_of(*e.shape, frame_corners(e.key, part));
+    const PartFrame frame = frame_between(std::span(corners).first(frame_size(part)));
+    OnRecord on{found.record, level, level, {}, points.size()};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Place at = points[i];
+        for (std::size_t j = way.size() - 1; j > found.level; --j) {
+            at = (*way[j].in_father)(at, static_cast<int>(way.size() - 1 - j));
+        }
+        on.at[i] = frame(at, level);
+    }
     return on;
 }
 
@@ -287,15 +272,6 @@ std::size_t LeafRecords::memory_bytes() const {
     return leaves_.capacity() * sizeof(LeafPolynomial) + nets_.memory_bytes() +
            records_.capacity() * sizeof(Record) + maps_.capacity() * sizeof(RecordMap) +
            of_part_.capacity() * sizeof(PartRecord);
-}
-
-void LeafRecords::finish() {
-    leaves_.shrink_to_fit();
-    records_.shrink_to_fit();
-    maps_.shrink_to_fit();
-    of_part_.shrink_to_fit();
-    record_of_ = {};
-    map_number_ = {};
 }
 
 }  // namespace nestgrid::engine

@@ -34,6 +34,9 @@ struct OnRecord {
     int level = 0;             ///< the points are in units of 2^-level of the record's size
     std::array<Place, 4> at{};
     std::size_t count = 0;
+
+    /// Whether the points, corners of a part, are those of the record.
+    bool is_whole() const { return level == 0 && count > 1; }
 };
 
 /// An edge or face of a leaf, or a part of one.
@@ -68,43 +71,51 @@ struct LeafPolynomial {
 /// Room for coefficients, which stay where they are.
 class NetStore {
 public:
-    static constexpr std::uint32_t always = 0xFFFFFFFFU;
-    /// \param now what was needed until before this may go
-    double* add(std::size_t count, std::uint32_t needed_until = always, std::uint32_t now = 0);
+    double* add(std::size_t count);
     std::size_t memory_bytes() const { return size_ * sizeof(double); }
 
 private:
     struct Block {
         std::unique_ptr<double[]> room;
         std::size_t size;
-        std::uint32_t needed_until;
     };
     std::vector<Block> blocks_;
     std::size_t left_ = 0;  // in the last block
     std::size_t size_ = 0;  // of all blocks
 };
 
+/// What is known of a part of a leaf.
+struct PartFacts {
+    NetFacts record;
+    double jump = 0;  ///< how far the leaf is from the record there
+};
+
+class RecordSearch;
+
 class LeafRecords {
 public:
-    /// Finds the records of all leaves, which have the order of the walk. Their polynomials are not
-    /// there before read_all().
+    /// Looks for the records of all leaves: claim() is called for each of them, in the order of the
+    /// walk, then read() where its polynomial is needed.
+    explicit LeafRecords(const LeafFunction& function)
+        : components_{function.components()}, drawn_{function.drawn()} {}
+    /// Adds the last element on the way, a leaf, and makes it the owner of records.
     /// \throw GridError where a degree is not 1 to 8, and names the leaf
-    LeafRecords(const LeafFunction& function, const BaseWalk& walk);
-    /// Asks the function once for each leaf, in the order of the walk, and forgets what around()
-    /// needs. A polynomial is there until the last leaf that needs it is ready.
-    /// \param summary gets degrees and ranges of components
-    /// \param ready called for each leaf when its polynomial and those of the owners around are
-    ///        there; that of a leaf that owns a record is there by then
+    void claim(const LeafFunction& function, Task* task, std::span<const BaseElement> way);
+    /// Takes the polynomial of a leaf, the last element on the way.
+    /// \param room for it
     /// \throw GridError where a value is not finite, and names the leaf
-    void read_all(const LeafFunction& function, const BaseWalk& walk, LeafSummary& summary,
-                  const std::function<void(std::uint32_t leaf)>& ready);
+    void read(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
+              std::uint32_t leaf, NetStore& room);
+    /// No more leaves are added.
+    void end_claims();
+
     /// The records of no leaf.
     explicit LeafRecords(const LeafSummary& summary)
         : components_{summary.components}, drawn_{summary.drawn} {}
     /// Reads the chosen leaves, in the order of the choice, and behind them the owners of records
     /// on these. Asks the function once for each leaf. Where the choice marks no parts for records,
     /// there are polynomials alone.
-    /// \throw GridError as the other constructor and read_all()
+    /// \throw GridError as claim() and read()
     LeafRecords(const LeafFunction& function, const BaseWalk& walk, const LeafChoice& choice,
                 const LeafSummary& summary);
 
@@ -118,8 +129,6 @@ public:
     /// Points on a part of a leaf. \param points at most 4, in units of 2^-level of the leaf
     OnRecord on_part(const LeafPolynomial& leaf, std::size_t part, std::span<const Place> points,
                      int level) const;
-    /// Points on an edge or face of the last element on the way, before read_all().
-    OnRecord around(std::span<const BaseElement> way, std::span<const Place> points) const;
     /// Beta and range in a leaf, without the records around.
     NetFacts facts_of(const LeafPolynomial& leaf) const {
         return joined_facts(drawn_, [&](std::size_t c) {
@@ -128,10 +137,8 @@ public:
     }
     /// Beta and range on the part with these corners.
     NetFacts facts_on(const OnRecord& part) const;
-    /// Beta and range on a part of a leaf, read from its record.
-    NetFacts facts_on(const LeafPolynomial& leaf, std::size_t part) const;
-    /// How far a leaf is from the records around.
-    float jump_of(const LeafPolynomial& leaf) const;
+    /// The same of a part of a leaf, with the record on its corners, and what the leaf has there.
+    PartFacts compared(const LeafPolynomial& leaf, std::size_t part, const OnRecord& on) const;
     std::uint32_t owner_of(const OnRecord& part) const {
         return records_[static_cast<std::size_t>(part.record)].leaf;
     }
@@ -142,6 +149,7 @@ public:
     std::size_t memory_bytes() const;
 
 private:
+    friend class RecordSearch;
     struct Record {
         std::uint32_t leaf;                  // the owner
         std::array<std::uint8_t, 3> corner;  // of the owner: the frame
@@ -162,33 +170,60 @@ private:
         std::uint32_t map;
     };
 
-    void take_leaves(const LeafFunction& function, const BaseWalk& walk, const LeafChoice* choice);
     static int degree_of(const LeafFunction& function, Task* task,
                          std::span<const BaseElement> way);
     bool claim_parts(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
                      const LeafChoice* choice, std::uint32_t index);
-    void take_polynomial(const LeafFunction& function, Task* task, std::span<const BaseElement> way,
-                         LeafPolynomial& leaf, std::uint32_t needed_until = NetStore::always);
-    template <class Function>
-    void for_each_owner(const LeafPolynomial& leaf, const Function& function) const;
-    void add_parts(std::span<const BaseElement> way, LeafPolynomial& leaf);
-    double jump_on(const LeafPolynomial& leaf, std::size_t part) const;
+    void add_parts(RecordSearch& search, std::span<const BaseElement> way, LeafPolynomial& leaf);
     void take(const LeafPolynomial& leaf, std::size_t component, std::span<const Place> frame,
               const Factors& part, double* out) const;
     const Factors& factors_of(const Record& record) const;
+    NetPart part_of(const OnRecord& at) const;
     int put_record(const OnRecord& at, std::size_t component, NetRoom& net) const;
-    void finish();
+    const double* on_record(const OnRecord& at, const NetPart& there, std::size_t component,
+                            std::array<NetRoom, 2>& room, int& degree) const;
 
     std::size_t components_;
     std::size_t drawn_;
     std::vector<LeafPolynomial> leaves_;
     NetStore nets_;
     std::vector<Record> records_;
-    std::vector<RecordMap> maps_;      // each once
-    std::vector<PartRecord> of_part_;  // of the parts of the leaves that are looked at
-    // Needed by around():
-    KeyTable<NodeKey, std::uint32_t> record_of_;  // by the names of parts
+    std::vector<RecordMap> maps_;                 // each once
+    std::vector<PartRecord> of_part_;             // of the parts of the leaves that are looked at
+    KeyTable<NodeKey, std::uint32_t> record_of_;  // by the names of parts, until all are found
     std::map<RecordMap, std::uint32_t> map_number_;
+};
+
+/// Finds the records around the elements of one walk, when all leaves have made their claims.
+class RecordSearch {
+public:
+    explicit RecordSearch(const LeafRecords& records) : records_{&records} {}
+
+    /// The record of the largest edge or face of a leaf that has a part or corner of the last
+    /// element on the way in it. \param points of that part, in the coordinates of the element
+    OnRecord around(std::span<const BaseElement> way, PartOrCorner of,
+                    std::span<const Place> points);
+    /// The leaf that owns the record on a part of a leaf.
+    std::uint32_t owner(std::span<const BaseElement> way, std::size_t part);
+
+private:
+    static constexpr std::int32_t none = -1;
+    struct Found {
+        std::int32_t record = none;
+        std::uint32_t level = 0;  // of the element on the way that has it on a part
+        std::uint8_t part = 0;
+        bool known = false;
+    };
+    /// What was found for an element on the way.
+    struct Known {
+        NodeKey path = 0;
+        PartKeys key{};
+        std::array<Found, max_parts> part{};
+    };
+    Found find(std::span<const BaseElement> way, PartOrCorner of);
+
+    const LeafRecords* records_;
+    std::vector<Known> known_;  // by level
 };
 
 /// The corners of a part of a reference element, and those of the frame of a part.

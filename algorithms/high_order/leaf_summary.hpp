@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Ranges and jumps of the polynomials of all leaves, which stay when the polynomials themselves are
-// gone: 12 bytes a leaf for the field, 4 for positions.
+// gone: 12 bytes a leaf for the field, 8 for positions.
 #pragma once
 
 #include <algorithm>
@@ -33,6 +33,9 @@ struct LeafSummary {
     std::vector<double> greatest;
     std::vector<Range> ranges;  ///< of the leaves in the order of the walk; none for positions
     std::vector<float> jumps;   ///< how far leaves are from the records and nodes around
+    /// Of positions: how far what is drawn in leaves may leave the hull of their corners, which is
+    /// made of the values at nodes.
+    std::vector<float> beyond_hull;
 
     explicit LeafSummary(const LeafFunction& function)
         : components{function.components()},
@@ -57,7 +60,7 @@ struct LeafSummary {
     }
     void reserve(std::size_t leaves) {
         jumps.reserve(leaves);
-        if (drawn == 1) ranges.reserve(leaves);
+        drawn == 1 ? ranges.reserve(leaves) : beyond_hull.reserve(leaves);
     }
     void add_range(double low, double high) {
         ranges.push_back({detail::float_below(low - rounding() - least[0]),
@@ -70,7 +73,8 @@ struct LeafSummary {
                high - least[0] >= static_cast<double>(range.least);
     }
     std::size_t memory_bytes() const {
-        return ranges.capacity() * sizeof(Range) + jumps.capacity() * sizeof(float);
+        return ranges.capacity() * sizeof(Range) +
+               (jumps.capacity() + beyond_hull.capacity()) * sizeof(float);
     }
 };
 

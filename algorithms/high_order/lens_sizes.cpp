@@ -26,6 +26,14 @@ LeafCorners::LeafCorners(const BaseWalk& walk) {
     walk.for_each(add, BaseWalk::Positions::yes);
 }
 
+std::span<const Point> LeafCorners::positions(std::size_t leaf, std::span<const Place> points,
+                                              int level,
+                                              std::array<Point, max_corners>& room) const {
+    std::transform(points.begin(), points.end(), room.begin(),
+                   [&](const Place& point) { return position(leaf, point, level); });
+    return std::span(room).first(points.size());
+}
+
 Point LeafCorners::position(std::size_t leaf, const Place& at, int level) const {
     const Leaf& of = leaves_[leaf];
     Point local = point_at(at, level);
@@ -35,6 +43,14 @@ Point LeafCorners::position(std::size_t leaf, const Place& at, int level) const 
         x[d] = net_value(of.net[d].data(), 1, parts_of(of.shape).factors, local);
     }
     return x;
+}
+
+bool RegionParts::has(std::size_t leaf, std::span<const Place> corners, int level) const {
+    std::array<Point, max_corners> room;
+    const auto x = corners_->positions(leaf, corners, level, room);
+    const double near = share * diameter_of(x);
+    return std::any_of(x.begin(), x.end(),
+                       [&](const Point& at) { return region_.distance(at) <= near; });
 }
 
 LensSizes::LensSizes(const LensRequest& lens, const LeafCorners& corners)
@@ -52,9 +68,7 @@ double LensSizes::greatest_size(const Point& x) const {
 
 bool LensSizes::is_fine(std::size_t leaf, std::span<const Place> corners, int level) const {
     std::array<Point, max_corners> room;
-    const auto x = std::span(room).first(corners.size());
-    std::transform(corners.begin(), corners.end(), x.begin(),
-                   [&](const Place& corner) { return corners_->position(leaf, corner, level); });
+    const auto x = corners_->positions(leaf, corners, level, room);
     const double diameter = diameter_of(x);
     return std::all_of(x.begin(), x.end(),
                        [&](const Point& at) { return share_ * diameter <= greatest_size(at); });

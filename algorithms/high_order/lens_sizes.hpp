@@ -25,6 +25,9 @@ public:
     /// A point of a leaf, whose edges are straight. \param leaf in the order of the walk
     /// \param at in units of 2^-level
     Point position(std::size_t leaf, const Place& at, int level) const;
+    /// Those of several points. \param room for them
+    std::span<const Point> positions(std::size_t leaf, std::span<const Place> points, int level,
+                                     std::array<Point, max_corners>& room) const;
     std::size_t memory_bytes() const { return leaves_.capacity() * sizeof(Leaf); }
 
 private:
@@ -33,6 +36,31 @@ private:
         std::array<std::array<double, max_corners>, 3> net{};  // of each coordinate, of degree 1
     };
     std::vector<Leaf> leaves_;
+};
+
+/// Edges and faces of leaves, and elements below these, that are in or near a region.
+class RegionParts {
+public:
+    /// Borrows the corners.
+    RegionParts(const RegionRequest& region, const LeafCorners& corners)
+        : region_{region}, corners_{&corners} {}
+
+    double tolerance() const { return region_.threshold; }
+    /// Whether a part of a leaf is. Those around a part that is are, too.
+    /// \param corners in units of 2^-level
+    bool has(std::size_t leaf, std::span<const Place> corners, int level) const;
+    bool has(const PartOfLeaf& part) const { return has(part.leaf, part.corners(), part.level); }
+    /// Whether elements at a node of the hierarchy, their parts and all below may be. Where they
+    /// are at a new node, they are at the corners. \param size as in RealNode
+    bool may_have(double size, const Point& node) const {
+        return region_.distance(node) <= (1 + 1.1 * share) * size;
+    }
+
+private:
+    static constexpr double share = 3.125;  // of the diameter, as far as near is
+
+    RegionRequest region_;
+    const LeafCorners* corners_;
 };
 
 class LensSizes {

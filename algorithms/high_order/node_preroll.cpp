@@ -1,348 +1,260 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// How RealNodes are made.
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <high_order/node_preroll.hpp>
 
-#include <high_order/real_nodes.hpp>
-#include <nestgrid/algorithms/detail/round_up.hpp>
-#include <nestgrid/detail/interpolate.hpp>
+#include <algorithm>
+#include <limits>
 
 namespace nestgrid::engine {
 
-namespace {
-
-/// Sums of few terms are this much larger at most than they are computed.
-constexpr double rounding = 1 + 1e-12;
-
-void raise(float& number, double to) {
-    number = std::max(number, detail::float_above(to * rounding));
+RealNodes::Preroll::Preroll(RealNodes& nodes, const LeafFunction& function, const BaseWalk& walk,
+                            LeafSummary& summary, const Executor& executor)
+    : nodes_{&nodes},
+      function_{&function},
+      walk_{&walk},
+      summary_{&summary},
+      executor_{&executor},
+      records_{function},
+      components_{summary.components},
+      drawn_{summary.drawn} {
+    const auto add = [this](Task* task, std::span<const BaseElement> way) {
+        way.back().member->rule == nullptr ? add_leaf(task, way) : add_split(way);
+    };
+    walk.for_each(add, BaseWalk::Positions::yes);
+    records_.end_claims();
+    find_records();
+    nodes.values_.resize(nodes.nodes_.size() * components_);
+    facts_.resize(leaves_.size());
+    read_all();
 }
 
-}  // namespace
-
-/// Fills the table. Numbers of nodes are those of RealNodes::nodes_.
-class RealNodes::Preroll {
-public:
-    Preroll(RealNodes& nodes, const LeafFunction& function, const BaseWalk& walk,
-            LeafSummary& summary)
-        : nodes_{&nodes},
-          summary_{&summary},
-          records_{function, walk},
-          components_{summary.components},
-          drawn_{summary.drawn} {
-        walk.for_each([this](Task*, std::span<const BaseElement> way) {
-            if (way.back().member->rule == nullptr) add_leaf(way);
-        });
-        const auto add = [this](Task*, std::span<const BaseElement> way) {
-            if (way.back().member->rule != nullptr) add_split(way);
-        };
-        walk.for_each(add, BaseWalk::Positions::yes);
-        std::stable_sort(hanging_.begin(), hanging_.end());
-        std::stable_sort(halved_.begin(), halved_.end());
-        std::stable_sort(splits_.begin(), splits_.end(),
-                         [](const Split& a, const Split& b) { return a.level < b.level; });
-        nodes.values_.resize(nodes.nodes_.size() * components_);
-        facts_.resize(leaves_.size());
-        at_corners_.resize(leaves_.size() * max_corners * drawn_);
-        records_.read_all(function, walk, summary, [this](std::uint32_t leaf) { look_at(leaf); });
+std::uint32_t RealNodes::Preroll::number_of(NodeKey key) {
+    const auto fresh = static_cast<std::uint32_t>(nodes_->nodes_.size());
+    const auto [at, is_new] = nodes_->number_.insert(key, fresh);
+    if (is_new) {
+        nodes_->nodes_.emplace_back();
+        first_.push_back(no_leaf);
     }
+    return *at;
+}
 
-    void run() {
-        deviation_.resize(nodes_->nodes_.size());
-        for (const Split& split : splits_) put_offsets(split);
-        summary_->reserve(leaves_.size());
-        for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) seed(leaf);
-        sweep();
+void RealNodes::Preroll::add_leaf(Task* task, std::span<const BaseElement> way) {
+    const BaseElement& e = way.back();
+    const auto leaf = static_cast<std::uint32_t>(leaves_.size());
+    if (leaf % chunk_size == 0) {
+        Chunk& chunk = chunks_.emplace_back();
+        for (const BaseElement& on_way : way) chunk.first.push_back(on_way.number);
+        chunk.begin = leaf;
+        // Those above whose first leaf this is went before.
+        chunk.first_split = splits_.size();
+        for (std::size_t i = way.size(); i-- > 1 && way[i].number == 0;) --chunk.first_split;
     }
+    records_.claim(*function_, task, way);
+    LeafNodes corner{};
+    for (std::size_t k = 0; k < e.shape->corners; ++k) {
+        corner[k] = number_of(e.key[k]);
+        if (first_[corner[k]] == no_leaf) first_[corner[k]] = leaf;
+    }
+    leaves_.push_back(corner);
+}
 
-private:
-    /// A node on a part of a record: its numbers are read while the polynomial of the owner, a
-    /// leaf, is in memory.
-    struct OfOwner {
-        std::uint32_t owner;
-        std::uint32_t node;
-        OnRecord part;
+void RealNodes::Preroll::add_split(std::span<const BaseElement> way) {
+    const BaseElement& e = way.back();
+    const RedSplitKeys keys = split_keys_of(e.key, *e.member->rule);
+    Split split{{}, e.member->rule, static_cast<int>(way.size())};
+    for (std::size_t n = 0; n < e.shape->node.size(); ++n) split.node[n] = number_of(keys[n]);
+    const double diameter = diameter_of(std::span(e.x).first(e.shape->corners));
+    for (const std::uint32_t number : made_by(split)) raise(node(number).size, diameter);
+    splits_.push_back(split);
+}
 
-        bool operator<(const OfOwner& other) const { return owner < other.owner; }
+/// Finds which chunks need others, the nodes that hang and the parts that nodes halve.
+void RealNodes::Preroll::find_records() {
+    std::vector<Seen> seen(chunks_.size());
+    const auto find = [&](std::size_t i) { seen[i] = find_in(chunks_[i]); };
+    const auto take = [&](std::size_t i) {
+        for (const OnOwner& on : seen[i].hanging) {
+            if (node(on.node).hangs) continue;
+            node(on.node).hangs = true;
+            chunks_[chunk_of(records_.owner_of(on.part))].hanging.push_back(on);
+        }
+        for (const OnOwner& on : seen[i].halved) {
+            RealNode& made = node(on.node);
+            if (made.halves > 0) continue;
+            made.shift = static_cast<std::uint8_t>(on.part.shift);
+            made.halves = static_cast<std::uint32_t>(nodes_->parts_.size());
+            nodes_->parts_.emplace_back(records_.in_owner(on.part));
+            chunks_[chunk_of(records_.owner_of(on.part))].halved.push_back(on);
+        }
+        chunks_[i].complete = std::max(i, seen[i].owners.back());
+        for (const std::size_t owner : seen[i].owners) {
+            chunks_[owner].needed = std::max(chunks_[owner].needed, chunks_[i].complete);
+        }
+        seen[i] = {};
     };
-    struct LeafFacts {
-        double beta;
-        double flatness;  // the greatest beta of the leaf and its parts
-        double least;     // of the leaf and its records
-        double greatest;
-        float jump;
+    executor_->run(chunks_.size(), find, take);
+}
+
+auto RealNodes::Preroll::find_in(const Chunk& chunk) const -> Seen {
+    Seen seen;
+    RecordSearch search(records_);
+    std::size_t leaf = chunk.begin;
+    std::size_t split = chunk.first_split;
+    const auto needs = [&](std::uint32_t of) {
+        const std::size_t owner = chunk_of(of);
+        if (owner != seen.owners.back()) seen.owners.push_back(owner);
     };
-
-    RealNode& node(std::uint32_t number) { return nodes_->nodes_[number]; }
-    double value(std::uint32_t number, std::size_t c) const {
-        return nodes_->values_[number * components_ + c];
-    }
-
-    /// Makes the corners of a leaf known. A corner inside a larger leaf's part has the value of the
-    /// record, any other that of the first leaf that has it.
-    void add_leaf(std::span<const BaseElement> way) {
-        const BaseElement& e = way.back();
-        LeafNodes corner{};
-        for (std::size_t k = 0; k < e.shape->corners; ++k) {
-            const auto fresh = static_cast<std::uint32_t>(nodes_->nodes_.size());
-            const auto [at, is_new] = nodes_->number_.insert(e.key[k], fresh);
-            corner[k] = *at;
-            if (is_new) {
-                nodes_->nodes_.emplace_back();
-                first_.push_back(static_cast<std::uint32_t>(leaves_.size()));
+    seen.owners.push_back(chunk_of(static_cast<std::uint32_t>(leaf)));
+    walk_->for_each(
+        [&](Task*, std::span<const BaseElement> way) {
+            const BaseElement& e = way.back();
+            if (e.member->rule != nullptr) {
+                find_halved(search, way, splits_[split++], seen);
+                return;
             }
-            if (node(corner[k]).hangs) continue;
-            const Place place = e.shape->reference_corner(k);
-            const OnRecord hangs_on = records_.around(way, std::span(&place, 1));
-            if (hangs_on.record < 0) continue;
-            node(corner[k]).hangs = true;
-            hanging_.push_back({records_.owner_of(hangs_on), corner[k], hangs_on});
-        }
-        leaves_.push_back(corner);
-    }
-
-    void add_split(std::span<const BaseElement> way) {
-        const BaseElement& e = way.back();
-        const RedSplitKeys keys = split_keys_of(e.key, *e.member->rule);
-        Split split{{}, e.member->rule, static_cast<int>(way.size())};
-        for (std::size_t n = 0; n < e.shape->node.size(); ++n) {
-            split.node[n] = *nodes_->number_.find(keys[n]);  // a corner of a leaf
-        }
-        const double diameter = diameter_of(std::span(e.x).first(e.shape->corners));
-        for (const std::uint32_t number : made_by(split)) raise(node(number).size, diameter);
-        for (const ShapePart& part : e.shape->parts) put_beta(way, part, split);
-        splits_.push_back(split);
-    }
-
-    /// Tells the node of a split that halves a part, and hangs, how far that part is from flat. A
-    /// triangle has no node: the edges that children have in it, and the faces of leaves, tell.
-    void put_beta(std::span<const BaseElement> way, const ShapePart& part, const Split& split) {
-        const ShapeParts& shape = *way.back().shape;
-        const std::uint8_t n = node_halving(*split.rule, part);
-        if (n == no_new_node) return;
-        const std::uint32_t number = split.node[shape.corners + n];
-        RealNode& made = node(number);
-        if (!made.hangs || made.halves > 0) return;
-        const std::array<Place, 4> places = corners_of(shape, part);
-        const OnRecord on = records_.around(way, std::span(places).first(part.count));
-        if (on.record < 0) return;
-        made.shift = static_cast<std::uint8_t>(on.shift);
-        halved_.push_back({records_.owner_of(on), number, on});
-        made.halves = static_cast<std::uint32_t>(nodes_->parts_.size());
-        nodes_->parts_.emplace_back(records_.in_owner(on));
-    }
-
-    /// Fathers come first: what moves the parents is known.
-    void put_offsets(const Split& split) {
-        const auto corners = static_cast<std::size_t>(split.rule->corner_count());
-        std::array<std::array<double, max_split_nodes>, 3> u;
-        for (std::size_t c = 0; c < drawn_; ++c) {
-            for (std::size_t n = 0; n < corners + split.rule->new_nodes.size(); ++n) {
-                u[c][n] = value(split.node[n], c);
+            for (std::size_t p = 0; p < e.shape->parts.size(); ++p) {
+                needs(search.owner(way, p));
             }
-        }
-        for (std::size_t n = 0; n < split.rule->new_nodes.size(); ++n) {
-            const Stencil& stencil = split.rule->new_nodes[n];
-            const std::uint32_t number = split.node[corners + n];
-            RealNode& made = node(number);
-            double off = norm_of(drawn_, [&](std::size_t c) {
-                return u[c][corners + n] - nestgrid::detail::interpolate(stencil, u[c].data(), 1);
-            });
-            double moved = 0;
-            for (std::size_t i = 0; i < stencil.count; ++i) {
-                moved = std::max(moved, deviation_[split.node[stencil.parent[i]]]);
+            for (std::size_t k = 0; k < e.shape->corners; ++k) {
+                const Place place = e.shape->reference_corner(k);
+                const OnRecord on =
+                    search.around(way, e.shape->parts.size() + k, std::span(&place, 1));
+                if (on.record < 0) continue;
+                needs(records_.owner_of(on));
+                seen.hanging.push_back({leaves_[leaf][k], on});
             }
-            off += moved;
-            raise(made.off, off);
-            if (!made.hangs) continue;
-            deviation_[number] = std::max(deviation_[number], off * rounding);
-            raise(made.stop, flat_share * made.beta);
+            ++leaf;
+        },
+        chunk.first, size_of(chunk));
+    std::sort(seen.owners.begin(), seen.owners.end());
+    seen.owners.erase(std::unique(seen.owners.begin(), seen.owners.end()), seen.owners.end());
+    return seen;
+}
+
+/// A node of a split that halves a part which lies in one of a leaf hangs there, and stops as
+/// that part is flat. A triangle has no node: the edges that children have in it, and the faces
+/// of leaves, tell.
+void RealNodes::Preroll::find_halved(RecordSearch& search, std::span<const BaseElement> way,
+                                     const Split& split, Seen& seen) {
+    const ShapeParts& shape = *way.back().shape;
+    for (std::size_t p = 0; p < shape.parts.size(); ++p) {
+        const std::uint8_t n = node_halving(*split.rule, shape.parts[p]);
+        if (n == no_new_node) continue;
+        const std::array<Place, 4> places = corners_of(shape, shape.parts[p]);
+        const OnRecord on = search.around(way, p, std::span(places).first(shape.parts[p].count));
+        if (on.record >= 0) seen.halved.push_back({split.node[shape.corners + n], on});
+    }
+}
+
+/// Reads all chunks in order, and looks at each when it is complete.
+void RealNodes::Preroll::read_all() {
+    std::vector<std::vector<std::size_t>> completed(chunks_.size());  // by chunk
+    std::vector<std::vector<std::size_t>> unneeded(chunks_.size());
+    for (std::size_t i = 0; i < chunks_.size(); ++i) {
+        completed[chunks_[i].complete].push_back(i);
+        unneeded[std::max(chunks_[i].needed, i)].push_back(i);
+    }
+    const std::size_t at_a_time = 4 * executor_->concurrency();
+    for (std::size_t begin = 0; begin < chunks_.size(); begin += at_a_time) {
+        const std::size_t end = std::min(begin + at_a_time, chunks_.size());
+        const auto read_one = [&](std::size_t i) { read(chunks_[begin + i]); };
+        executor_->run(end - begin, read_one,
+                       [&](std::size_t i) { take_ranges(chunks_[begin + i]); });
+        std::vector<std::size_t> ready;
+        for (std::size_t i = begin; i < end; ++i) {
+            ready.insert(ready.end(), completed[i].begin(), completed[i].end());
+        }
+        executor_->run(
+            ready.size(), [&](std::size_t i) { look_at(chunks_[ready[i]]); }, [](std::size_t) {});
+        for (std::size_t i = begin; i < end; ++i) {
+            for (const std::size_t chunk : unneeded[i]) chunks_[chunk].nets.reset();
         }
     }
+}
 
-    static std::span<const OfOwner> of_owner(const std::vector<OfOwner>& all, std::uint32_t leaf) {
-        const auto [begin, end] = std::equal_range(all.begin(), all.end(), OfOwner{leaf, 0, {}});
-        const auto first = static_cast<std::size_t>(begin - all.begin());
-        return std::span(all).subspan(first, static_cast<std::size_t>(end - begin));
-    }
-
-    /// Takes what nodes and the leaf itself need of a leaf while its polynomial is there.
-    void look_at(std::uint32_t leaf) {
-        const LeafPolynomial& of = records_.leaves()[leaf];
-        for (std::size_t k = of.parts().corners; k-- > 0;) {
-            const std::uint32_t number = leaves_[leaf][k];
-            const std::size_t own = net_corner(of.degree, of.factors(), k);
-            const bool gives = first_[number] == leaf && !node(number).hangs;
+/// Takes the polynomials of a chunk, and what nodes need of them.
+void RealNodes::Preroll::read(Chunk& chunk) {
+    chunk.nets = std::make_unique<NetStore>();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    chunk.ranges.assign(components_, {infinity, -infinity});
+    auto leaf = static_cast<std::uint32_t>(chunk.begin);
+    walk_->for_each(
+        [&](Task* task, std::span<const BaseElement> way) {
+            if (way.back().member->rule != nullptr) return;
+            records_.read(*function_, task, way, leaf, *chunk.nets);
+            const LeafPolynomial& of = records_.leaves()[leaf];
+            chunk.greatest_degree = std::max(chunk.greatest_degree, int{of.degree});
+            const std::size_t size = net_size(of.degree, of.factors());
             for (std::size_t c = 0; c < components_; ++c) {
-                const double at_corner = records_.net(of, c)[own];
-                if (gives) nodes_->values_[number * components_ + c] = at_corner;
-                if (c < drawn_) at_corners_[(leaf * max_corners + k) * drawn_ + c] = at_corner;
+                const double* const net = records_.net(of, c);
+                const auto [least, greatest] = std::minmax_element(net, net + size);
+                Range& range = chunk.ranges[c];
+                range = {std::min(range.least, *least), std::max(range.greatest, *greatest)};
             }
-        }
-        for (const OfOwner& on : of_owner(hanging_, leaf)) {
-            records_.values_at(on.part, nodes_->values_.data() + on.node * components_);
-        }
-        for (const OfOwner& on : of_owner(halved_, leaf)) {
-            node(on.node).beta = records_.facts_on(on.part).beta;
-        }
-        const NetFacts own = records_.facts_of(of);
-        LeafFacts& facts = facts_[leaf];
-        facts = {own.beta, own.beta, own.least, own.greatest, records_.jump_of(of)};
-        for (std::size_t part = 0; part < of.parts().parts.size(); ++part) {
-            const NetFacts there = records_.facts_on(of, part);
-            facts.flatness = std::max(facts.flatness, there.beta);
-            facts.least = std::min(facts.least, there.least);
-            facts.greatest = std::max(facts.greatest, there.greatest);
+            give_corners(leaf++);
+        },
+        chunk.first, size_of(chunk));
+    for (const OnOwner& on : chunk.hanging) {
+        records_.values_at(on.part, nodes_->values_.data() + on.node * components_);
+    }
+    for (const OnOwner& on : chunk.halved) node(on.node).beta = records_.facts_on(on.part).beta;
+}
+
+/// A corner inside a larger leaf's part has the value of the record, any other that of the
+/// first leaf that has it.
+void RealNodes::Preroll::give_corners(std::uint32_t leaf) {
+    const LeafPolynomial& of = records_.leaves()[leaf];
+    for (std::size_t k = of.parts().corners; k-- > 0;) {
+        const std::uint32_t number = leaves_[leaf][k];
+        if (first_[number] != leaf || node(number).hangs) continue;
+        for (std::size_t c = 0; c < components_; ++c) {
+            nodes_->values_[number * components_ + c] = corner_value(of, k, c);
         }
     }
+}
 
-    /// Tells the corners of a leaf what they cannot know from nodes, and the summary of the leaf.
-    void seed(std::size_t leaf) {
-        const LeafFacts& facts = facts_[leaf];
-        const auto corners =
-            std::span(leaves_[leaf]).first(records_.leaves()[leaf].parts().corners);
-        summary_->greatest_beta = std::max(summary_->greatest_beta, facts.beta);
-        double error = facts.beta;
-        double lo = std::numeric_limits<double>::infinity();
-        double hi = -lo;
-        double low = facts.least;
-        double high = facts.greatest;
-        double jump = 0;
-        double moved = 0;
-        for (std::size_t k = 0; k < corners.size(); ++k) {
-            const double at_corner = value(corners[k], 0);
-            const auto off = static_cast<double>(node(corners[k]).off);
-            lo = std::min(lo, at_corner);
-            hi = std::max(hi, at_corner);
-            low = std::min(low, at_corner - off);
-            high = std::max(high, at_corner + off);
-            const double* const own = at_corners_.data() + (leaf * max_corners + k) * drawn_;
-            jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) {
-                                return own[c] - value(corners[k], c);
-                            }));
-            moved = std::max(moved, deviation_[corners[k]]);
-        }
-        const float jumps = std::max(facts.jump, detail::float_above(jump));
-        summary_->jumps.push_back(jumps);
-        if (drawn_ == 1) summary_->add_range(low, high);
-        // What is inside parts is that of the records, which are off by the jumps.
-        error += drawn_ == 1 ? jump : jump + static_cast<double>(jumps);
-        if (drawn_ == 1) error = std::max({error, facts.greatest - hi, lo - facts.least});
-        error += moved;
-        for (const std::uint32_t number : corners) {
-            RealNode& corner = node(number);
-            raise(corner.bound, error);
-            raise(corner.stop, flat_share * facts.flatness);
-        }
+void RealNodes::Preroll::take_ranges(const Chunk& chunk) {
+    summary_->greatest_degree = std::max(summary_->greatest_degree, chunk.greatest_degree);
+    for (std::size_t c = 0; c < components_; ++c) {
+        summary_->least[c] = std::min(summary_->least[c], chunk.ranges[c].least);
+        summary_->greatest[c] = std::max(summary_->greatest[c], chunk.ranges[c].greatest);
     }
+}
 
-    /// Fine to coarse, level by level: `bound` without the node's own part is that of finer nodes.
-    void sweep() {
-        for (std::size_t end = splits_.size(); end > 0;) {
-            std::size_t begin = end;
-            while (begin > 0 && splits_[begin - 1].level == splits_[end - 1].level) --begin;
-            const auto level = std::span(splits_).subspan(begin, end - begin);
-            for (const Split& split : level) add_own_part(split);
-            for (const Split& split : level) put_stop(split);
-            for (const Split& split : level) raise_corners(split);
-            end = begin;
-        }
+/// Looks at the leaves of a chunk and their records.
+void RealNodes::Preroll::look_at(const Chunk& chunk) {
+    RecordSearch search(records_);
+    auto leaf = static_cast<std::uint32_t>(chunk.begin);
+    walk_->for_each(
+        [&](Task*, std::span<const BaseElement> way) {
+            if (way.back().member->rule == nullptr) look_at(search, way, leaf++);
+        },
+        chunk.first, size_of(chunk));
+}
+
+void RealNodes::Preroll::look_at(RecordSearch& search, std::span<const BaseElement> way,
+                                 std::uint32_t leaf) {
+    const LeafPolynomial& of = records_.leaves()[leaf];
+    const ShapeParts& shape = of.parts();
+    const NetFacts own = records_.facts_of(of);
+    LeafFacts facts{own.beta, own.beta, own.least, own.greatest, of.jump};
+    for (std::size_t p = 0; p < shape.parts.size(); ++p) {
+        const std::array<Place, 4> corners = corners_of(shape, shape.parts[p]);
+        const OnRecord on = search.around(way, p, std::span(corners).first(shape.parts[p].count));
+        const PartFacts there = records_.compared(of, p, on);
+        facts.flatness = std::max(facts.flatness, there.record.beta);
+        facts.least = std::min(facts.least, there.record.least);
+        facts.greatest = std::max(facts.greatest, there.record.greatest);
+        facts.jump = std::max(facts.jump, detail::float_above(there.jump));
     }
-
-    static std::span<const std::uint32_t> made_by(const Split& split) {
-        return std::span(split.node)
-            .subspan(static_cast<std::size_t>(split.rule->corner_count()),
-                     split.rule->new_nodes.size());
+    double jump = 0;
+    for (std::size_t k = 0; k < shape.corners; ++k) {
+        jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) {
+                            return corner_value(of, k, c) - value(leaves_[leaf][k], c);
+                        }));
     }
-
-    /// Once for each node, when all finer nodes are done.
-    void add_own_part(const Split& split) {
-        done_.resize(nodes_->nodes_.size(), false);
-        for (const std::uint32_t number : made_by(split)) {
-            if (done_[number]) continue;
-            done_[number] = true;
-            RealNode& made = node(number);
-            made.bound = detail::float_above(
-                (static_cast<double>(made.bound) + static_cast<double>(made.off)) * rounding);
-        }
-    }
-
-    /// On an element that stops, U differs from the interpolant of its true corner values by at
-    /// most `below`, and those from P_S U by the offsets of the corners that S holds at: by at most
-    /// `bound` in all. The triangles leave P_S U by twice its affine residual, which is that of the
-    /// true values, moved by at most 5 / 2 bound on boxes, 8 / 3 on prisms, bound on pyramids, and
-    /// 0 on simplices. Together that is 6 bound + 2 residual, or 19 / 3, or 3, or 1.
-    void put_stop(const Split& split) {
-        const auto corners = static_cast<std::size_t>(split.rule->corner_count());
-        const Shape shape = split.rule->parent;
-        const Factors factors = factors_of(shape);
-        const bool pyramid = shape == Shape::pyramid;
-        const double share = pyramid                  ? 3
-                             : factors.count == 1     ? 1
-                             : factors.all_segments() ? 6
-                                                      : 19.0 / 3;
-        const double residual = norm_of(drawn_, [&](std::size_t c) {
-            std::array<double, max_corners> u;
-            for (std::size_t k = 0; k < corners; ++k) u[k] = value(split.node[k], c);
-            return pyramid ? pyramid_residual(u)
-                           : fit_affine(std::span(u).first(corners), factors).residual;
-        });
-        double below = 0;
-        for (const std::uint32_t made : made_by(split)) {
-            below = std::max(below, static_cast<double>(node(made).bound));
-        }
-        for (const std::uint32_t made : made_by(split)) {
-            raise(node(made).stop, share * below + 2 * residual);
-        }
-    }
-
-    void raise_corners(const Split& split) {
-        float stop = 0;
-        float bound = 0;
-        float size = 0;
-        for (const std::uint32_t number : made_by(split)) {
-            const RealNode& made = node(number);
-            size = std::max(size, made.size);
-            stop = std::max(stop, made.stop);
-            bound = std::max(bound, made.bound);
-        }
-        for (const std::uint32_t number :
-             std::span(split.node).first(static_cast<std::size_t>(split.rule->corner_count()))) {
-            RealNode& corner = node(number);
-            corner.stop = std::max(corner.stop, stop);
-            corner.bound = std::max(corner.bound, bound);
-            raise(corner.size, 1.25 * static_cast<double>(size));
-        }
-    }
-
-    RealNodes* nodes_;
-    LeafSummary* summary_;
-    LeafRecords records_;
-    std::size_t components_;
-    std::size_t drawn_;
-    std::vector<std::uint32_t> first_;  // the first leaf that has a node
-    std::vector<OfOwner> hanging_;      // nodes, by owner, as the next one
-    std::vector<OfOwner> halved_;       // parts that nodes halve
-    std::vector<LeafFacts> facts_;
-    std::vector<double> at_corners_;  // what leaves have there, of the components that are drawn
-    std::vector<LeafNodes> leaves_;
-    std::vector<Split> splits_;      // coarse to fine
-    std::vector<double> deviation_;  // how far P_S U may be from U at a node that hangs
-    std::vector<bool> done_;
-};
-
-RealNodes::RealNodes(std::uint64_t epoch, const LeafFunction& function, const BaseWalk& walk,
-                     LeafSummary& summary)
-    : epoch_{epoch}, components_{summary.components} {
-    Preroll(*this, function, walk, summary).run();
-    least_ = summary.least[0];
-    greatest_ = summary.greatest[0];
-    nodes_.shrink_to_fit();
-    parts_.shrink_to_fit();
-    values_.shrink_to_fit();
+    facts.corner_jump = jump;
+    facts_[leaf] = facts;
 }
 
 }  // namespace nestgrid::engine

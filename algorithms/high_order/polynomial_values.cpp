@@ -30,7 +30,7 @@ public:
                          .position_tolerance = near(),
                          .values = looked_at()}),
           found_(points.size()) {
-        if (data_->places) polynomials_ = data_->gathered(std::nullopt);
+        if (data_->places) polynomials_ = data_->gathered({});
         std::vector<std::size_t> all(points.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         probed = engine::probe<double>(leaves_, points);
@@ -93,9 +93,9 @@ private:
     };
 
     /// Straight leaves are not divided, so that no polynomial is needed before they are found.
-    HighOrderData::DrawnValues looked_at() const {
+    decltype(VirtualOptions::values) looked_at() const {
         if (data_->places) return std::nullopt;
-        return HighOrderData::DrawnValues(std::in_place);
+        return decltype(VirtualOptions::values)(std::in_place);
     }
     double near() const { return data_->places ? 1e-3 * data_->places->summary.extent() : 0; }
 
@@ -126,8 +126,8 @@ private:
             if (found.leaf != VirtualElement::no_leaf) number.insert(NodeKey{found.path}, 0);
         }
         std::uint32_t count = 0;
-        const auto chooses = [&](std::size_t, NodeKey path) {
-            std::uint32_t* const at = number.find(NodeKey{static_cast<std::uint64_t>(path)});
+        const auto chooses = [&](std::size_t, const BaseElement& leaf) {
+            std::uint32_t* const at = number.find(NodeKey{static_cast<std::uint64_t>(leaf.path)});
             if (at != nullptr) *at = count++;
             return at != nullptr;
         };

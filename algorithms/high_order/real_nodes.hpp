@@ -47,9 +47,10 @@ class RealNodes final : public Bounds {
 public:
     /// \param epoch of the hierarchy
     /// \param summary of the leaves, which is set
+    /// \param executor for what leaves are asked for
     /// \throw GridError as LeafRecords
     RealNodes(std::uint64_t epoch, const LeafFunction& function, const BaseWalk& walk,
-              LeafSummary& summary);
+              LeafSummary& summary, const Executor& executor);
 
     const RealNode* find(NodeKey key) const {
         const std::uint32_t* const at = number_.find(key);

@@ -65,22 +65,78 @@ int LeafRecords::put_record(const OnRecord& at, std::size_t component, NetRoom& 
     return owner.degree;
 }
 
+NetPart LeafRecords::part_of(const OnRecord& at) const {
+    const Factors& factors = factors_of(records_[static_cast<std::size_t>(at.record)]);
+    if (!at.is_whole()) return part_at(factors, std::span(at.at).first(at.count), at.level);
+    NetPart part;
+    part.factors = factors;
+    for (std::size_t i = 0; i < at.count; ++i) {
+        part.number[i] = static_cast<std::uint8_t>(at.at[i][0] + 2 * at.at[i][1]);
+    }
+    return part;
+}
+
+/// The coefficients of a record on a part of it. \param degree gets theirs
+const double* LeafRecords::on_record(const OnRecord& at, const NetPart& there,
+                                     std::size_t component, std::array<NetRoom, 2>& room,
+                                     int& degree) const {
+    degree = put_record(at, component, room[0]);
+    if (at.is_whole()) return room[0].data();
+    const Factors& factors = factors_of(records_[static_cast<std::size_t>(at.record)]);
+    restrict_net(room[0].data(), degree, factors, there, room[1].data());
+    return room[1].data();
+}
+
 NetFacts LeafRecords::facts_on(const OnRecord& part) const {
-    const Factors& factors = factors_of(records_[static_cast<std::size_t>(part.record)]);
-    const NetPart there = part_at(factors, std::span(part.at).first(part.count), part.level);
+    const NetPart there = part_of(part);
     return joined_facts(drawn_, [&](std::size_t c) {
-        NetRoom whole;
-        NetRoom own;
-        const int degree = put_record(part, c, whole);
-        restrict_net(whole.data(), degree, factors, there, own.data());
-        return net_facts(own.data(), degree, there.factors);
+        std::array<NetRoom, 2> room;
+        int degree = 0;
+        const double* const net = on_record(part, there, c, room, degree);
+        return net_facts(net, degree, there.factors);
     });
 }
 
-NetFacts LeafRecords::facts_on(const LeafPolynomial& leaf, std::size_t part) const {
+/// No two polynomials differ by more than their coefficients do, both raised to one degree.
+PartFacts LeafRecords::compared(const LeafPolynomial& leaf, std::size_t number,
+                                const OnRecord& on) const {
+    const Record& record = records_[static_cast<std::size_t>(on.record)];
+    if (&leaves_[record.leaf] == &leaf) return {facts_on(on), 0};
     const ShapeParts& shape = leaf.parts();
-    const std::array<Place, 4> corners = corners_of(shape, shape.parts[part]);
-    return facts_on(on_part(leaf, part, std::span(corners).first(shape.parts[part].count), 0));
+    const ShapePart& part = shape.parts[number];
+    const NetPart there = part_of(on);
+    // The leaf's own coefficients in the same order.
+    const std::array<Place, 4> corners = corners_of(shape, part);
+    std::array<Place, 4> sorted{};
+    for (std::size_t i = 0; i < part.count; ++i) sorted[there.number[i]] = corners[i];
+    const auto frame = std::span(sorted).first(frame_size(part));
+    std::array<std::vector<double>, 3> differences;
+    double jump = 0;
+    PartFacts facts;
+    facts.record = joined_facts(drawn_, [&](std::size_t c) {
+        std::array<NetRoom, 2> room;
+        NetRoom own;
+        int degree = 0;
+        const double* const other = on_record(on, there, c, room, degree);
+        take(leaf, c, frame, there.factors, own.data());
+        if (degree == int{leaf.degree} && drawn_ == 1) {
+            const std::size_t size = net_size(degree, there.factors);
+            for (std::size_t i = 0; i < size; ++i) {
+                jump = std::max(jump, std::abs(own[i] - other[i]));
+            }
+        } else {
+            const int greatest = std::max(degree, int{leaf.degree});
+            differences[c] = elevated(own.data(), leaf.degree, there.factors, greatest);
+            const auto of_record = elevated(other, degree, there.factors, greatest);
+            for (std::size_t i = 0; i < of_record.size(); ++i) differences[c][i] -= of_record[i];
+        }
+        return net_facts(other, degree, there.factors);
+    });
+    for (std::size_t i = 0; i < differences[0].size(); ++i) {
+        jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) { return differences[c][i]; }));
+    }
+    facts.jump = jump;
+    return facts;
 }
 
 void LeafRecords::values_at(const OnRecord& point, double* out) const {
@@ -106,46 +162,6 @@ PartOfLeaf LeafRecords::in_owner(const OnRecord& part) const {
         }
     }
     return in;
-}
-
-float LeafRecords::jump_of(const LeafPolynomial& leaf) const {
-    float jump = leaf.jump;
-    for (std::size_t part = 0; part < leaf.parts().parts.size(); ++part) {
-        jump = std::max(jump, detail::float_above(jump_on(leaf, part)));
-    }
-    return jump;
-}
-
-/// Compares the coefficients of a leaf on one of its parts with those of the record there, both
-/// raised to one degree: no two polynomials differ by more than their coefficients do.
-double LeafRecords::jump_on(const LeafPolynomial& leaf, std::size_t number) const {
-    const ShapeParts& shape = leaf.parts();
-    const ShapePart& part = shape.parts[number];
-    const std::array<Place, 4> corners = corners_of(shape, part);
-    const OnRecord on = on_part(leaf, number, std::span(corners).first(part.count), 0);
-    const Factors& factors = factors_of(records_[static_cast<std::size_t>(on.record)]);
-    const NetPart there = part_at(factors, std::span(on.at).first(part.count), on.level);
-    // The leaf's own coefficients in the same order.
-    std::array<Place, 4> sorted{};
-    for (std::size_t i = 0; i < part.count; ++i) sorted[there.number[i]] = corners[i];
-    std::array<std::vector<double>, 3> differences;
-    for (std::size_t c = 0; c < drawn_; ++c) {
-        NetRoom whole;
-        NetRoom other;
-        NetRoom own;
-        const int degree = put_record(on, c, whole);
-        restrict_net(whole.data(), degree, factors, there, other.data());
-        take(leaf, c, std::span(sorted).first(frame_size(part)), there.factors, own.data());
-        const int greatest = std::max(degree, int{leaf.degree});
-        differences[c] = elevated(own.data(), leaf.degree, there.factors, greatest);
-        const auto of_record = elevated(other.data(), degree, there.factors, greatest);
-        for (std::size_t i = 0; i < of_record.size(); ++i) differences[c][i] -= of_record[i];
-    }
-    double jump = 0;
-    for (std::size_t i = 0; i < differences[0].size(); ++i) {
-        jump = std::max(jump, norm_of(drawn_, [&](std::size_t c) { return differences[c][i]; }));
-    }
-    return jump;
 }
 
 }  // namespace nestgrid::engine

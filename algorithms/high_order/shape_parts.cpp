@@ -118,27 +118,42 @@ FaceMask ShapeParts::faces_at(const Place& at, int level) const {
     return faces;
 }
 
-Place ShapeParts::node_of(const Rule& of, std::size_t number) const {
-    if (number < corners) return node[number];
-    const Stencil& stencil = of.new_nodes[number - corners];
-    Place sum{};
-    for (std::size_t i = 0; i < stencil.count; ++i) {
-        for (std::size_t d = 0; d < 3; ++d) sum[d] += node[stencil.parent[i]][d];
+std::vector<InFather> children_in_father(const Rule& rule) {
+    const ShapeParts& father = parts_of(rule.parent);
+    // A node of the rule, in units of 1 / 2.
+    const auto node = [&](std::size_t number) {
+        if (number < father.corners) return father.node[number];
+        const Stencil& stencil = rule.new_nodes[number - father.corners];
+        Place sum{};
+        for (std::size_t i = 0; i < stencil.count; ++i) {
+            for (std::size_t d = 0; d < 3; ++d) sum[d] += father.node[stencil.parent[i]][d];
+        }
+        for (std::int64_t& x : sum) x /= stencil.count;
+        return sum;
+    };
+    std::vector<InFather> all;
+    for (const Child& child : rule.children) {
+        const ShapeParts& own = parts_of(child.shape);
+        InFather& in = all.emplace_back();
+        in.origin = node(child.corner[0]);
+        for (std::size_t d = 0; d < father.dimension; ++d) {
+            in.axis[d] = minus(node(child.corner[own.axis[d]]), in.origin);
+        }
+        for (const ShapePart& part : own.parts) {
+            FaceMask faces = ~FaceMask{0};
+            for (std::size_t i = 0; i < part.count; ++i) {
+                faces &= father.faces_at(node(child.corner[part.corner[i]]), 1);
+            }
+            in.around.push_back(static_cast<std::int8_t>(father.part_in(faces)));
+        }
+        for (std::size_t k = 0; k < own.corners; ++k) {
+            const std::size_t number = child.corner[k];
+            in.around.push_back(static_cast<std::int8_t>(
+                number < father.corners ? static_cast<int>(father.parts.size() + number)
+                                        : father.part_in(father.faces_at(node(number), 1))));
+        }
     }
-    for (std::int64_t& x : sum) x /= stencil.count;
-    return sum;
-}
-
-Place ShapeParts::in_father(const Rule& of, const Child& child, const Place& at, int level) const {
-    const Place origin = node_of(of, child.corner[0]);
-    const ShapeParts& own = parts_of(child.shape);
-    Place x;
-    for (std::size_t i = 0; i < 3; ++i) x[i] = origin[i] * (std::int64_t{1} << level);
-    for (std::size_t d = 0; d < dimension; ++d) {
-        const Place axis_end = node_of(of, child.corner[own.axis[d]]);
-        for (std::size_t i = 0; i < 3; ++i) x[i] += at[d] * (axis_end[i] - origin[i]);
-    }
-    return x;
+    return all;
 }
 
 bool divides_red(const Rule& rule) {

@@ -25,6 +25,8 @@ struct ShapePart {
     std::uint8_t node = no_new_node;  ///< of the red rule, that halves it
 };
 
+inline constexpr std::size_t max_parts = 18;  ///< of a shape
+
 struct ShapeParts {
     static constexpr int inside = -1;
     static constexpr int at_corner = -2;
@@ -48,10 +50,6 @@ struct ShapeParts {
     FaceMask faces_at(const Place& at, int level) const;
     /// Number of the part that all these faces, and no others, are around; or inside, or at_corner.
     int part_in(FaceMask faces) const { return part_in_[faces]; }
-    /// A node of a rule that divides red, in units of 1 / 2.
-    Place node_of(const Rule& of, std::size_t number) const;
-    /// A point of a child of such a rule, in units of 1 / 2^(level + 1).
-    Place in_father(const Rule& of, const Child& child, const Place& at, int level) const;
 
 private:
     friend ShapeParts make_parts(Shape shape);
@@ -68,6 +66,30 @@ inline std::size_t frame_size(const ShapePart& part) { return part.count == 2 ? 
 
 /// \param shape of dimension 2 or 3
 const ShapeParts& parts_of(Shape shape);
+
+/// A part of a shape, or, behind all parts, a corner.
+using PartOrCorner = std::size_t;
+
+/// Where a child of a rule that divides red lies in its father.
+struct InFather {
+    Place origin{};  ///< of the child's coordinates, in units of 1 / 2, as the next one
+    std::array<Place, 3> axis{};
+    /// The part or corner of the father that each part and corner of the child lies in, or
+    /// ShapeParts::inside.
+    std::vector<std::int8_t> around;
+
+    /// \param at in units of 2^-level of the child \return in units of 2^-(level + 1) of the father
+    Place operator()(const Place& at, int level) const {
+        Place x;
+        for (std::size_t i = 0; i < 3; ++i) {
+            x[i] = origin[i] * (std::int64_t{1} << level) + at[0] * axis[0][i] +
+                   at[1] * axis[1][i] + at[2] * axis[2][i];
+        }
+        return x;
+    }
+};
+/// Of all children of a rule that divides red.
+std::vector<InFather> children_in_father(const Rule& rule);
 
 /// Whether a rule makes the nodes of the red rule of its shape, and as many children of each shape,
 /// in any order.

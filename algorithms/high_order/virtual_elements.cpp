@@ -22,8 +22,8 @@ struct VirtualElements::Places {
 
 namespace {
 
-/// VirtualOptions::values of a drawing that looks at no polynomial.
-const HighOrderData::DrawnValues no_values{std::in_place};
+/// Those of a drawing that looks at no polynomial.
+const VirtualOptions no_leaf{.values = decltype(VirtualOptions::values)(std::in_place)};
 
 /// \param name of the tolerance \param of what the extent is
 void require_tolerance(double tolerance, const std::string& name, double extent,
@@ -56,15 +56,23 @@ VirtualElements::VirtualElements(std::shared_ptr<const HighOrderData> data,
                                  const VirtualOptions& options)
     : data_{std::move(data)},
       linear_{is_linear(*data_)},
-      leaves_{data_->gathered(linear_ ? no_values : options.values)},
-      field_{data_->field, leaves_->field, options.tolerance},
+      leaves_{data_->gathered(linear_ ? no_leaf : options)},
+      field_{data_->field, leaves_->field, options.tolerance,
+             options.region ? options.region->threshold : options.tolerance},
       places_{places_within(options)},
       components_{field_.summary->components},
       depth_{options.depth},
       lens_{options.lens ? std::make_shared<const LensSizes>(*options.lens, data_->corners())
                          : nullptr},
-      criterion_{field_, places_, lens_} {
+      region_{options.region
+                  ? std::make_shared<const RegionParts>(*options.region, data_->corners())
+                  : nullptr},
+      criterion_{field_, places_, lens_, region_} {
     require_tolerance(field_.tolerance, "tolerance", field_.summary->extent(), "range of the data");
+    if (options.region) {
+        require_tolerance(options.region->threshold, "tolerance in the region",
+                          field_.summary->extent(), "range of the data");
+    }
     if (places_) {
         require_tolerance(places_->tolerance, "tolerance of positions", places_->summary->extent(),
                           "diameter of the domain");
@@ -81,8 +89,13 @@ NodeMask VirtualElements::Stops::holds(const NewNodes& nodes) const {
             const auto size = static_cast<double>(field_.nodes->find(nodes.keys[n])->size);
             return lens_ == nullptr || lens_->may_stop(size, nodes.positions[n]);
         };
-        const bool stops = field_.stops(nodes.keys[n]) &&
-                           (!places_ || places_->stops(nodes.keys[n])) && fine_enough();
+        const auto in_region = [&] {
+            const auto size = static_cast<double>(field_.nodes->find(nodes.keys[n])->size);
+            return region_ != nullptr && region_->may_have(size, nodes.positions[n]);
+        };
+        const bool stops = field_.stops(nodes.keys[n], false) &&
+                           (!places_ || places_->stops(nodes.keys[n], false)) && fine_enough() &&
+                           (field_.stops(nodes.keys[n], true) || !in_region());
         mask |= NodeMask{stops} << n;
     }
     return mask & ~nodes.outside;
@@ -270,8 +283,9 @@ void VirtualElements::describe_split(const VirtualElement& e, Member& member,
 /// Whether a node of the hierarchy hangs on a part that is flat.
 bool VirtualElements::hangs_flat(const Drawn& drawn, NodeKey key) const {
     const RealNode* const node = drawn.nodes->find(key);
-    return node != nullptr && node->hangs && is_flat(drawn, node->beta, node->shift, [&] {
-               return node->halves == 0 || lens_->is_fine(drawn.nodes->part_halved(*node));
+    return node != nullptr && node->hangs &&
+           is_flat(drawn, node->beta, node->shift, [&](const auto& asks) {
+               return node->halves == 0 || asks(drawn.nodes->part_halved(*node));
            });
 }
 

@@ -3,8 +3,9 @@
 //
 // Elements of a virtual refinement: those of the hierarchy, and the parts of leaves.
 //
-// A part of a leaf is flat where beta is at most a third of the tolerance, and it is as small as a
-// lens asks if there is one; or where it is as small as the depth allows. A leaf, or an element
+// A part of a leaf is flat where beta is at most a third of the tolerance, or of that of the region
+// that it is in, and it is as small as a lens asks if there is one; or where it is as small as the
+// depth allows. A leaf, or an element
 // below it, is divided where an edge, a face or itself is not flat, or where what is drawn in it
 // might miss U by more than the tolerance. Invariants:
 //   - a new node hangs exactly where the part that it halves is flat;
@@ -48,37 +49,42 @@ private:
         const RealNodes* nodes = nullptr;
         const LeafRecords* records = nullptr;
         double tolerance = 0;
-        double flat = 0;      // beta of what is flat
-        double rounding = 0;  // added to bounds
+        double in_region = 0;  // the tolerance there
+        double flat = 0;       // beta of what is flat
+        double rounding = 0;   // added to bounds
 
-        Drawn(const PolynomialFacts& of, const LeafRecords& leaves, double within)
+        Drawn(const PolynomialFacts& of, const LeafRecords& leaves, double within,
+              double within_region = std::numeric_limits<double>::infinity())
             : summary{&of.summary},
               nodes{&of.nodes},
               records{&leaves},
               tolerance{within},
+              in_region{std::min(within, within_region)},
               flat{within / flat_share},
               rounding{of.summary.rounding()} {}
         /// Whether elements may stop at a node of the hierarchy.
-        bool stops(NodeKey key) const {
+        bool stops(NodeKey key, bool region) const {
             const RealNode* const node = nodes->find(key);
-            return node != nullptr && static_cast<double>(node->stop) <= tolerance;
+            return node != nullptr &&
+                   static_cast<double>(node->stop) <= (region ? in_region : tolerance);
         }
     };
     /// S = (stop <= tolerance) at nodes of the hierarchy, and the lens lets elements stop there.
     class Stops final : public Criterion {
     public:
         Stops(const Drawn& field, const std::optional<Drawn>& places,
-              std::shared_ptr<const LensSizes> lens)
-            : field_{field}, places_{places}, lens_{std::move(lens)} {}
+              std::shared_ptr<const LensSizes> lens, std::shared_ptr<const RegionParts> region)
+            : field_{field}, places_{places}, lens_{std::move(lens)}, region_{std::move(region)} {}
         NodeMask holds(const NewNodes& nodes) const override;
         bool saturated() const override { return true; }
-        bool wants_positions() const override { return lens_ != nullptr; }
+        bool wants_positions() const override { return lens_ != nullptr || region_ != nullptr; }
         bool made_for(std::uint64_t epoch) const override { return field_.nodes->made_for(epoch); }
 
     private:
         Drawn field_;
         std::optional<Drawn> places_;
         std::shared_ptr<const LensSizes> lens_;
+        std::shared_ptr<const RegionParts> region_;
     };
     struct OpenTask final : Task {
         std::unique_ptr<Task> base;
@@ -127,10 +133,15 @@ private:
     void look_at_error(OpenTask& task, const VirtualElement& e, const Drawn& drawn,
                        std::span<const OwnNet> own, std::span<const double> u,
                        Looked& looked) const;
-    /// \param is_fine whether the lens finds the part fine; asked only if there is a lens
-    template <class IsFine>
-    bool is_flat(const Drawn& drawn, double beta, int level, const IsFine& is_fine) const {
-        return level >= depth_ || (beta <= drawn.flat && (lens_ == nullptr || is_fine()));
+    /// \param with calls a function with the part of a leaf, for the lens and the region
+    template <class WithPart>
+    bool is_flat(const Drawn& drawn, double beta, int level, const WithPart& with) const {
+        if (level >= depth_) return true;
+        if (beta > drawn.flat) return false;
+        const bool fine =
+            lens_ == nullptr || with([&](const auto&... part) { return lens_->is_fine(part...); });
+        if (!fine || region_ == nullptr || flat_share * beta <= drawn.in_region) return fine;
+        return !with([&](const auto&... part) { return region_->has(part...); });
     }
     bool hangs_flat(const Drawn& drawn, NodeKey key) const;
     void leaf_values(OpenTask& task, const VirtualElement& e, const Drawn& drawn, std::size_t node,
@@ -143,7 +154,8 @@ private:
     std::optional<Drawn> places_;  // where leaves are curved
     std::size_t components_;
     int depth_;
-    std::shared_ptr<const LensSizes> lens_;  // or null
+    std::shared_ptr<const LensSizes> lens_;      // or null
+    std::shared_ptr<const RegionParts> region_;  // or null
     Stops criterion_;
 };
 

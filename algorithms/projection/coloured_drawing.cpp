@@ -10,6 +10,7 @@
 #include <nestgrid/algorithms/count_triangles.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/polynomial_values.hpp>
 #include <nestgrid/algorithms/refine_colours.hpp>
 #include <projection/by_criterion.hpp>
 #include <projection/drawn_within.hpp>
@@ -58,6 +59,14 @@ auto draw_within(const Criteria& criteria, const Work& work, const Within& withi
     auto drawn = within(search.threshold, begun, work);
     drawn.search = search;
     return drawn;
+}
+
+/// Splits triangles of a drawing of polynomials for their colours where the projection asks for it.
+template <class Result>
+void refine_asked(Projected<Result>& drawn, const Prerolls& prerolls, const Projection& projection,
+                  const Work& work) {
+    if (projection.colour_tolerance == 0 || drawn.cancelled) return;
+    refine_colours(drawn.surface, prerolls, projection.colour_tolerance, projection, work);
 }
 
 template <class Real>
@@ -138,6 +147,18 @@ Projected<Shading> draw_shading(const Hierarchy<Real>& hierarchy, std::optional<
     });
 }
 
+/// Collapses edges of a drawing of polynomials while its colours keep an error.
+template <class Result>
+auto collapsing_colours(double scale, const Work& work) {
+    return [scale, &work](Projected<Result>& drawn, const VirtualRefinement& fine, double error) {
+        double no_surface_error = 0;
+        double* surface_error = &no_surface_error;
+        if constexpr (requires { drawn.surface_error; }) surface_error = &drawn.surface_error;
+        collapse_colours_of<double>(drawn, fine, fine.bounds(), {.errors = {error}, .scale = scale},
+                                    *surface_error, work.executor);
+    };
+}
+
 Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
                           const Projection& projection, const ShadingOptions& options,
                           const Work& work) {
@@ -154,7 +175,19 @@ Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
         return engine::count_triangles(fine, fine.criterion(), fine.bounds(), most, options,
                                        work.executor);
     };
+    const auto flat_within = [&](const VirtualRefinement& fine, double error) {
+        ShadingOptions flat = options;
+        flat.flatness = std::min(flat.flatness, error);
+        return engine::triangulate(fine, scale.value_or(0), fine.criterion(), fine.bounds(), flat,
+                                   work.executor);
+    };
+    if (auto drawn = engine::collapsed_within_error<Shading>(
+            prerolls, projection, work, 2, flat_within,
+            collapsing_colours<Shading>(scale.value_or(0), work))) {
+        return *std::move(drawn);
+    }
     if (auto drawn = engine::within_error<Shading>(prerolls, projection, work, 2, within, count)) {
+        refine_asked(*drawn, prerolls, projection, work);
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, 2, [&](const auto& hierarchy) {
@@ -163,13 +196,23 @@ Projected<Shading> shaded(const Prerolls& prerolls, std::optional<double> scale,
     });
 }
 
-/// What is drawn of polynomials: beside a slice, everything.
-engine::DrawnValues values_of(const SliceRequest& request, const IsosurfaceOptions& options) {
-    if (!request.functions.empty()) return std::nullopt;
-    return engine::values_at(request.isovalues, options.cap);
+/// What is drawn of polynomials.
+engine::DrawnParts parts_of(const SliceRequest& request, const IsosurfaceOptions& options) {
+    engine::DrawnParts parts = engine::zeros_of(request.functions, options.cap);
+    parts.values = engine::isosurfaces_at(request.isovalues, options.cap).values;
+    return parts;
 }
 
 }  // namespace
+
+ColourRefinement refine_colours(Surface<3>& surface, const Prerolls& prerolls, double tolerance,
+                                const Projection& projection, const Work& work) {
+    const auto data = engine::polynomials_for(prerolls, projection, work);
+    if (data != nullptr) set_polynomial_colours(surface, *data);
+    return detail::refine_colours(surface, tolerance, [&](std::span<const Point> points) {
+        return data != nullptr ? probe(*data, points) : probe(prerolls, points, projection, work);
+    });
+}
 
 Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
                        const Projection& projection, const IsosurfaceOptions& options,
@@ -186,7 +229,17 @@ Projected<Slice> slice(const Prerolls& prerolls, const LevelFunction& function,
         return engine::count_triangles(fine, {{&function}}, fine.criterion(), fine.bounds(), most,
                                        options, work.executor);
     };
-    if (auto drawn = engine::within_error<Slice>(prerolls, projection, work, 3, within, count)) {
+    if (auto drawn = engine::collapsed_within_error<Slice>(
+            prerolls, projection, work, 3,
+            [&](const VirtualRefinement& fine, double) { return within(fine); },
+            collapsing_colours<Slice>(0, work))) {
+        return *std::move(drawn);
+    }
+    const LevelFunction* const only = &function;
+    if (auto drawn =
+            engine::within_error<Slice>(prerolls, projection, work, 3, within, count,
+                                        engine::zeros_of(std::span(&only, 1), options.cap))) {
+        refine_asked(*drawn, prerolls, projection, work);
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
@@ -214,7 +267,7 @@ std::vector<Slice> detail::draw_slices(const Prerolls& prerolls, const SliceRequ
             return engine::slices(hierarchy, request, targets, criterion, bounds, options,
                                   work.executor);
         },
-        values_of(request, options));
+        parts_of(request, options));
 }
 
 std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const SliceRequest& request,
@@ -228,7 +281,7 @@ std::optional<std::uint64_t> count_triangles(const Prerolls& prerolls, const Sli
                 return engine::count_triangles(hierarchy, request, criterion, bounds, most, options,
                                                work.executor);
             },
-            values_of(request, options));
+            parts_of(request, options));
     } catch (const engine::Cancelled&) {
         return std::nullopt;
     }

@@ -142,11 +142,11 @@ engine::CountWithin counting(std::span<const double> isovalues, const Isosurface
 
 /// Draws level sets of one walk, perhaps within a number of triangles (segments) of all together.
 /// \param dimension of the grid
-/// \param values of polynomials that are drawn
+/// \param parts of polynomials that are drawn
 /// \param draw draw(hierarchy, criterion, bounds)
 template <class Result, int dimension, class Draw>
 Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double> isovalues,
-                                const engine::DrawnValues& values, const Projection& projection,
+                                const engine::DrawnParts& parts, const Projection& projection,
                                 const IsosurfaceOptions& options, const Work& work,
                                 const Draw& draw) {
     const auto within = [&](const VirtualRefinement& fine) {
@@ -154,7 +154,7 @@ Projected<Result> draw_together(const Prerolls& prerolls, std::span<const double
     };
     const auto count = counting<dimension>(isovalues, options, work);
     if (auto drawn = engine::within_error<Result>(prerolls, projection, work, dimension, within,
-                                                  count, values)) {
+                                                  count, parts)) {
         return *std::move(drawn);
     }
     return engine::with_field(prerolls, work, dimension, [&](const auto& hierarchy) {
@@ -198,21 +198,34 @@ Projected<Isosurface<dimension>> isosurface(const Prerolls& prerolls, double iso
     engine::check_first(prerolls, projection, work, "isosurfaces",
                         [&] { check_isosurface(projection, options, dimension); });
     const std::span<const double> isovalues(&isovalue, 1);
-    const engine::DrawnValues values = engine::values_at(isovalues, options.cap);
+    const engine::DrawnParts parts = engine::isosurfaces_at(isovalues, options.cap);
     const auto once = [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
         return engine::isosurface<dimension>(hierarchy, isovalue, criterion, bounds, options,
                                              work.executor);
     };
     if constexpr (dimension == 2) {
-        return draw_together<Isosurface<2>, 2>(prerolls, isovalues, values, projection, options,
+        return draw_together<Isosurface<2>, 2>(prerolls, isovalues, parts, projection, options,
                                                work, once);
     } else {
         const auto within = [&](const VirtualRefinement& fine) {
             return once(fine, fine.criterion(), fine.bounds());
         };
-        if (auto drawn = engine::within_error<Isosurface<3>>(prerolls, projection, work, 3, within,
-                                                             counting<3>(isovalues, options, work),
-                                                             values)) {
+        const auto collapse_edges = [&](Projected<Isosurface<3>>& drawn,
+                                        const VirtualRefinement& fine, double error) {
+            const Hierarchy<double>& hierarchy = fine;
+            drawn.collapsed = collapse(drawn.surface, hierarchy, isovalue, fine.bounds(),
+                                       {.error = error}, work.executor);
+            drawn.collapsed->hand_to(drawn, drawn.surface_error);
+        };
+        if (auto drawn = engine::collapsed_within_error<Isosurface<3>>(
+                prerolls, projection, work, 3,
+                [&](const VirtualRefinement& fine, double) { return within(fine); },
+                collapse_edges)) {
+            return *std::move(drawn);
+        }
+        if (auto drawn =
+                engine::within_error<Isosurface<3>>(prerolls, projection, work, 3, within,
+                                                    counting<3>(isovalues, options, work), parts)) {
             return *std::move(drawn);
         }
         return engine::with_field(prerolls, work, 3, [&](const auto& hierarchy) {
@@ -242,7 +255,7 @@ std::vector<Isosurface<dimension>> detail::draw_isosurfaces(
             return engine::isosurfaces<dimension>(hierarchy, isovalues, targets, criterion, bounds,
                                                   options, work.executor);
         },
-        engine::values_at(isovalues, options.cap));
+        engine::isosurfaces_at(isovalues, options.cap));
 }
 template std::vector<Isosurface<2>> detail::draw_isosurfaces(const Prerolls&,
                                                              std::span<const double>,
@@ -264,9 +277,10 @@ Projected<Isosurface<dimension>> isoband(const Prerolls& prerolls, double low, d
         engine::require_band(low, high, options);
     });
     const std::array isovalues{low, high};
-    const engine::DrawnValues values(std::in_place, 1, isovalues);
+    engine::DrawnParts parts;
+    parts.values.emplace(1, isovalues);
     return draw_together<Isosurface<dimension>, dimension>(
-        prerolls, isovalues, values, projection, options, work,
+        prerolls, isovalues, parts, projection, options, work,
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
             return engine::isoband<dimension>(hierarchy, low, high, criterion, bounds, options,
                                               work.executor);
@@ -283,7 +297,7 @@ Projected<Isolines> isolines(const Prerolls& prerolls, std::span<const double> v
     engine::check_first(prerolls, projection, work, "isolines",
                         [&] { engine::refuse_all_but_budgets(projection, "isolines"); });
     return draw_together<Isolines, 2>(
-        prerolls, values, engine::values_at(values, false), projection, options, work,
+        prerolls, values, engine::isosurfaces_at(values, false), projection, options, work,
         [&](const auto& hierarchy, const Criterion& criterion, const Bounds& bounds) {
             return engine::isolines(hierarchy, values, criterion, bounds, options, work.executor);
         });

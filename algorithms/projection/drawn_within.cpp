@@ -3,7 +3,9 @@
 #include <projection/drawn_within.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include <nestgrid/error.hpp>
@@ -76,31 +78,64 @@ std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
 double range_of(const HighOrder& data) {
     // Bounds are the same at any tolerance.
     const VirtualRefinement coarsest = polynomials_at(
-        data, {}, std::numeric_limits<double>::infinity(), DrawnValues(std::in_place));
+        data, {}, std::numeric_limits<double>::infinity(), isosurfaces_at({}, false));
     return coarsest.bounds().greatest() - coarsest.bounds().least();
 }
 
-DrawnValues values_at(std::span<const double> isovalues, bool cap) {
-    DrawnValues values(std::in_place);
+DrawnParts isosurfaces_at(std::span<const double> isovalues, bool cap) {
+    DrawnParts parts;
+    parts.values.emplace();
     for (const double isovalue : isovalues) {
-        values->push_back({isovalue, cap ? std::numeric_limits<double>::infinity() : isovalue});
+        parts.values->push_back(
+            {isovalue, cap ? std::numeric_limits<double>::infinity() : isovalue});
     }
-    return values;
+    return parts;
+}
+
+DrawnParts zeros_of(std::span<const LevelFunction* const> functions, bool cap) {
+    DrawnParts parts;
+    parts.values.emplace();
+    parts.functions.assign(functions.begin(), functions.end());
+    parts.boundary = cap;
+    return parts;
+}
+
+void check_collapse(const HighOrder& data, const Projection& projection) {
+    if (data.geometry_degree() > 1) {
+        throw InvalidInput("edges of what is drawn of curved cells are not collapsed");
+    }
+    if (projection.max_triangles > 0 || projection.slice_distance > 0) {
+        throw InvalidInput(
+            "edges of data of higher degree are collapsed within an error, by no number of "
+            "triangles and no distance yet");
+    }
+    // Below it, leaves might not be halved as often as they must be.
+    const int more = greatest_depth - VirtualOptions{}.depth;
+    const double least = std::ldexp(data.least_tolerance(), -2 * more) / polynomial_share;
+    const double error = projection.least_threshold();
+    if (error >= least && std::isfinite(error)) return;
+    std::ostringstream text;
+    text << "edges of data of higher degree are collapsed within an error of at least " << least;
+    throw InvalidInput(text.str());
 }
 
 VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
-                                 double tolerance, const DrawnValues& values) {
+                                 double tolerance, const DrawnParts& parts, int depth) {
     return {data,
             {.tolerance = std::min(tolerance, std::numeric_limits<double>::max()),
+             .depth = depth,
              .lens = projection.lens,
+             .region = projection.region,
              .position_tolerance = projection.position_error,
-             .values = values}};
+             .values = parts.values,
+             .functions = parts.functions,
+             .boundary = parts.boundary}};
 }
 
 TriangleBudget find_tolerance(const HighOrder& data, const Projection& projection,
-                              const CountWithin& count, const DrawnValues& values) {
+                              const CountWithin& count, const DrawnParts& parts) {
     const auto at = [&](double tolerance, std::uint64_t most) {
-        return count(polynomials_at(data, projection, tolerance, values), most);
+        return count(polynomials_at(data, projection, tolerance, parts), most);
     };
     return least_threshold(at, range_of(data), projection.max_triangles,
                            data.least_tolerance(projection.position_error));

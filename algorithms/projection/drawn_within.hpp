@@ -47,14 +47,21 @@ Projection told(Projection projection);
 std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
                                                  const Projection& projection, const Work& work);
 
-/// The level sets of polynomials that are drawn (VirtualOptions::values); nothing: all leaves are.
-using DrawnValues = decltype(VirtualOptions::values);
-/// Those of isovalues. \param cap whether what is inside them is drawn on the boundary, too
-DrawnValues values_at(std::span<const double> isovalues, bool cap);
+/// What is drawn of polynomials, as in VirtualOptions.
+struct DrawnParts {
+    decltype(VirtualOptions::values) values{};
+    std::vector<const LevelFunction*> functions{};
+    bool boundary = false;
+};
+/// Isosurfaces. \param cap whether what is inside them is drawn on the boundary, too
+DrawnParts isosurfaces_at(std::span<const double> isovalues, bool cap);
+/// Zeros of functions. \param cap as above
+DrawnParts zeros_of(std::span<const LevelFunction* const> functions, bool cap);
 /// The polynomials within a tolerance, of which infinity is one, and as finely as the lens of the
 /// projection asks.
 VirtualRefinement polynomials_at(const HighOrder& data, const Projection& projection,
-                                 double tolerance, const DrawnValues& values = {});
+                                 double tolerance, const DrawnParts& parts = {},
+                                 int depth = VirtualOptions{}.depth);
 
 /// Calls function(hierarchy), if that has the dimension, with the field as the work asks it.
 template <class Function>
@@ -70,10 +77,10 @@ auto with_field(const Prerolls& prerolls, const Work& work, int dimension,
 /// \param ask called with the VirtualRefinement
 template <class Ask>
 auto from_polynomials(const Prerolls& prerolls, const Projection& projection, const Work& work,
-                      const Ask& ask, const DrawnValues& values = {}) {
+                      const Ask& ask, const DrawnParts& parts = {}) {
     std::optional<std::invoke_result_t<const Ask&, const VirtualRefinement&>> result;
     if (const auto data = polynomials_for(prerolls, projection, work)) {
-        result = ask(polynomials_at(*data, projection, projection.least_threshold(), values));
+        result = ask(polynomials_at(*data, projection, projection.least_threshold(), parts));
     }
     return result;
 }
@@ -94,7 +101,7 @@ using CountWithin =
     std::function<std::optional<std::uint64_t>(const VirtualRefinement&, std::uint64_t most)>;
 /// The least tolerance at which a drawing of polynomials keeps within a number of triangles.
 TriangleBudget find_tolerance(const HighOrder& data, const Projection& projection,
-                              const CountWithin& count, const DrawnValues& values = {});
+                              const CountWithin& count, const DrawnParts& parts = {});
 
 /// Draws a field of higher degree, if it has the dimension: within the error that the projection
 /// asks for, or the least one with its number of triangles. Nothing where it asks for neither, or
@@ -104,32 +111,66 @@ std::optional<Projected<Result>> within_error(const Prerolls& prerolls,
                                               const Projection& projection, const Work& work,
                                               int dimension, const Draw& draw,
                                               const CountWithin& count,
-                                              const DrawnValues& values = {}) {
+                                              const DrawnParts& parts = {}) {
     const auto data = polynomials_for(prerolls, projection, work);
     if (data == nullptr) return std::nullopt;
     work.on(prerolls.field()).facts().require_dimension(dimension);
     const TriangleBudget search = threshold_of(
-        projection, work, [&] { return find_tolerance(*data, projection, count, values); });
+        projection, work, [&] { return find_tolerance(*data, projection, count, parts); });
     work.begin("drawing");
-    return Projected<Result>{draw(polynomials_at(*data, projection, search.threshold, values)),
+    return Projected<Result>{draw(polynomials_at(*data, projection, search.threshold, parts)),
                              search};
+}
+
+/// The part of an error within which polynomials are drawn before edges are collapsed within the
+/// rest, by the data that are drawn.
+inline constexpr double polynomial_share = 0.25;
+inline constexpr int greatest_depth = 16;  ///< of VirtualOptions
+/// \throw InvalidInput where edges are not collapsed within what the projection asks for
+void check_collapse(const HighOrder& data, const Projection& projection);
+
+/// Draws a field of higher degree and collapses edges within the error that the projection asks
+/// for. Nothing where it asks for none, or where all leaves are straight and of degree 1.
+/// \param draw draw(polynomials, error of these)
+/// \param collapse collapse(drawn, polynomials, what is left of the error)
+template <class Result, class Draw, class Collapse>
+std::optional<Projected<Result>> collapsed_within_error(const Prerolls& prerolls,
+                                                        const Projection& projection,
+                                                        const Work& work, int dimension,
+                                                        const Draw& draw,
+                                                        const Collapse& collapse) {
+    if (!projection.collapse) return std::nullopt;
+    const auto data = polynomials_for(prerolls, projection, work);
+    if (data == nullptr) return std::nullopt;
+    work.on(prerolls.field()).facts().require_dimension(dimension);
+    check_collapse(*data, projection);
+    const double error = projection.least_threshold();
+    const double first = polynomial_share * error;
+    work.begin("drawing");
+    const VirtualRefinement fine = polynomials_at(*data, projection, first, {}, greatest_depth);
+    Projected<Result> drawn{draw(fine, first), {.threshold = error}};
+    if (drawn.cancelled) return drawn;
+    work.begin("collapsing");
+    collapse(drawn, fine, error - first);
+    drawn.error_bound += first + data->jump();
+    return drawn;
 }
 
 /// Calls draw(hierarchy, criterion, bounds) once, with a field of the dimension under the
 /// projection.
 ///
 /// \param isovalues of the level sets that are drawn
-/// \param values of polynomials that are drawn
+/// \param parts of polynomials that are drawn
 template <class Draw>
 auto draw_once(const Prerolls& prerolls, const Projection& projection,
                std::span<const double> isovalues, const Work& work, int dimension, const Draw& draw,
-               const DrawnValues& values = {}) {
+               const DrawnParts& parts = {}) {
     const auto within = [&](const VirtualRefinement& fine) {
         work.on(prerolls.field()).facts().require_dimension(dimension);
         work.begin("drawing");
         return draw(fine, fine.criterion(), fine.bounds());
     };
-    if (auto drawn = from_polynomials(prerolls, projection, work, within, values)) {
+    if (auto drawn = from_polynomials(prerolls, projection, work, within, parts)) {
         return *std::move(drawn);
     }
     return with_field(prerolls, work, dimension, [&](const auto& hierarchy) {

@@ -8,9 +8,9 @@ namespace nestgrid::engine {
 
 /// Polynomials, with the field that they borrow.
 struct PolynomialsOfField {
-    explicit PolynomialsOfField(const FieldOnGrid& of)
-        : field{of}, data{field.visit([](const auto& hierarchy) {
-              return HighOrder(hierarchy);
+    PolynomialsOfField(const FieldOnGrid& of, const Executor& executor)
+        : field{of}, data{field.visit([&](const auto& hierarchy) {
+              return HighOrder(hierarchy, executor);
           })} {}
 
     FieldOnGrid field;
@@ -62,12 +62,13 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field) {
+std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field,
+                                                const Executor& executor) {
     const bool has_degree = field.visit([](const auto& hierarchy) {
         return hierarchy.offers(Feature::degree) && DegreeSearch(hierarchy).finds_one();
     });
     if (!has_degree) return nullptr;
-    const auto kept = std::make_shared<const PolynomialsOfField>(field);
+    const auto kept = std::make_shared<const PolynomialsOfField>(field, executor);
     return {kept, &kept->data};
 }
 

@@ -11,6 +11,6 @@ namespace nestgrid::engine {
 /// has a degree above 1.
 ///
 /// \throw InvalidInput, GridError as HighOrder
-std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field);
+std::shared_ptr<const HighOrder> polynomials_of(const FieldOnGrid& field, const Executor& executor);
 
 }  // namespace nestgrid::engine

@@ -134,9 +134,11 @@ public:
     }
 
     std::shared_ptr<const HighOrder> high_order(const Work& work) {
-        if (work.same_field != nullptr) return engine::polynomials_of(*work.same_field);
+        if (work.same_field != nullptr) {
+            return engine::polynomials_of(*work.same_field, work.executor);
+        }
         const std::scoped_lock lock(mutex_);
-        if (!high_order_) high_order_ = engine::polynomials_of(field_);
+        if (!high_order_) high_order_ = engine::polynomials_of(field_, work.executor);
         return *high_order_;
     }
 

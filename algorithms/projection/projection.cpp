@@ -63,14 +63,8 @@ void Projection::check() const {
 
 void Projection::require_error_alone(int degree) const {
     std::string what;
-    if (collapse) {
-        what = "no collapse of edges";
-    } else if (keeps_distance || indicator == "slope") {
+    if (keeps_distance || indicator == "slope") {
         what = "no distance";
-    } else if (region) {
-        what = "no region";
-    } else if (colour_tolerance > 0) {
-        what = "no tolerance of colours";
     } else if (blend != 1) {
         what = "no blend";
     } else if (!asks_for_error()) {

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Data of higher degree within a number of triangles, in a lens, between frames, and
-// within an error of positions.
+// Data of higher degree within a number of triangles, in a lens, in a region, between frames,
+// collapsed, coloured, measured, and within an error of positions.
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/frames.hpp>
+#include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/polynomial_values.hpp>
 
 #include "curved_world.hpp"
@@ -224,6 +225,54 @@ TEST(HighOrderLenses, AreCoarseFarAway) {
         "0 < finest <= coarsest");
 }
 
+// Regions.
+
+TEST(HighOrderRegions, KeepTheirOwnErrorAndStayClosed) {
+    std::size_t inner = 0;
+    for_each_world(12, [&](const auto& drawn, unsigned seed) {
+        std::mt19937 random(seed);
+        const Ball ball{{uniform(random) - 0.5, uniform(random) - 0.5, uniform(random) - 0.5},
+                        0.1 + 0.3 * uniform(random)};
+        const double inside = std::array{0.02, 0.1}[seed % 2];
+        VirtualOptions options{1, 6};
+        const std::size_t coarse = drawn.surface(0.1, options).surface.simplices.size();
+        options.region = RegionRequest{ball, inside};
+        const auto result = drawn.surface(0.1, options, {.verify = true});
+        expect_closed(result.surface);
+        expect_bound(drawn, result, 0.1, 1);
+        EXPECT_GE(result.surface.simplices.size(), coarse);
+        if (result.counts.limited != 0) return;
+        Surface<3> in_ball = result.surface;
+        std::erase_if(in_ball.simplices, [&](const auto& t) {
+            return std::ranges::none_of(
+                t, [&](std::uint32_t v) { return ball(result.surface.vertices[v]) == 0; });
+        });
+        inner += in_ball.simplices.size();
+        EXPECT_LE(measured(drawn.world, in_ball, 0.1),
+                  inside + drawn.data.jump() + std::ldexp(4.0, -20));
+    });
+    EXPECT_GT(inner, 1000U);
+}
+
+TEST(HighOrderRegions, AreCoarseFarAwayAndRefuseNoTolerance) {
+    const OnBoxes<3> boxes(
+        WorldOptions{.cells = 4, .levels = 1, .least_degree = 3, .greatest_degree = 3}, gyroid);
+    const Prerolls prerolls(boxes.world, boxes.field);
+    Projection how{.threshold = 0.5, .indicator = "error"};
+    const auto triangles = [&] {
+        return isosurface<3>(prerolls, 0.1, how).surface.simplices.size();
+    };
+    const std::size_t coarse = triangles();
+    how.region = RegionRequest{Ball{{-0.7, -0.7, -0.7}, 0.2}, 0.005};
+    const std::size_t region = triangles();
+    how.threshold = 0.005;
+    const std::size_t fine = triangles();
+    EXPECT_GT(region, coarse * 3 / 2);
+    EXPECT_LT(region, fine / 3);
+    how.region->threshold = 0;
+    expect_refused([&] { (void)triangles(); }, "the tolerance in the region is not");
+}
+
 // Frames.
 
 struct TwoFrames {
@@ -293,6 +342,108 @@ TEST(HighOrderFrames, AtTheirTimesAreTheFramesThemselves) {
         return isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds())).surface;
     };
     expect_same(draw(alone), draw(same));
+}
+
+// Fewer triangles, their colours, and what is measured of them.
+
+TEST(HighOrderCollapses, KeepTheErrorAndStayClosed) {
+    std::size_t drawn_triangles = 0;
+    std::size_t left = 0;
+    for_each_world(2, [&](const auto& drawn, unsigned) {
+        const Prerolls prerolls(drawn.world, drawn.field);
+        const double error = 0.2;
+        const Projection within{.threshold = error, .indicator = "error"};
+        Projection collapsing = within;
+        collapsing.collapse = true;
+        const auto result = isosurface<3>(prerolls, 0.1, collapsing);
+        ASSERT_TRUE(result.collapsed.has_value());
+        expect_closed(result.surface);
+        EXPECT_LE(measured(drawn.world, result.surface, 0.1),
+                  result.error_bound + std::ldexp(4.0, -20));
+        if (result.collapsed->exceeding == 0) {
+            EXPECT_LE(result.error_bound, (error + drawn.data.jump()) * (1 + 1e-6));
+        }
+        left += result.surface.simplices.size();
+        drawn_triangles += isosurface<3>(prerolls, 0.1, within).surface.simplices.size();
+    });
+    EXPECT_LT(left, drawn_triangles / 2);
+}
+
+/// The greatest difference of the colours of a surface from the data, at 15 points of triangles.
+template <class World>
+double colours_off(const World& world, const Surface<3>& surface) {
+    double greatest = 0;
+    for (const auto& t : surface.simplices) {
+        for (int a = 0; a <= 4; ++a) {
+            for (int b = 0; a + b <= 4; ++b) {
+                const std::array<double, 3> weight{a / 4.0, b / 4.0, 1 - (a + b) / 4.0};
+                Point x{0, 0, 0};
+                double colour = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    x = x + weight[k] * surface.vertices[t[k]];
+                    colour += weight[k] * surface.attributes[t[k]];
+                }
+                greatest = std::max(greatest, std::abs(world(x) - colour));
+            }
+        }
+    }
+    return greatest;
+}
+
+TEST(HighOrderColours, FollowThePolynomials) {
+    const OnBoxes<3> boxes(WorldOptions{.least_degree = 3, .greatest_degree = 3}, gyroid);
+    const Prerolls prerolls(boxes.world, boxes.field);
+    const Plane plane({0.1, 0.02, 0.3}, {1, 2, 3});
+    Projection within{.threshold = 1, .indicator = "error"};
+    const auto coarse = slice(prerolls, plane, within);
+    EXPECT_GT(colours_off(boxes.world, coarse.surface), 0.05);
+    within.colour_tolerance = 0.05;
+    const auto fine = slice(prerolls, plane, within);
+    expect_closed(fine.surface);
+    EXPECT_LE(colours_off(boxes.world, fine.surface), 0.05);
+    // Edges are collapsed while colours keep the error.
+    const auto fewer =
+        slice(prerolls, plane, {.threshold = 0.2, .indicator = "error", .collapse = true});
+    expect_closed(fewer.surface);
+    EXPECT_LE(colours_off(boxes.world, fewer.surface), fewer.error_bound);
+    EXPECT_LE(fewer.error_bound, (0.2 + boxes.data.jump()) * (1 + 1e-6));
+    const auto whole = slice(prerolls, plane, {.threshold = 0.2, .indicator = "error"});
+    EXPECT_LT(fewer.surface.simplices.size(), whole.surface.simplices.size());
+}
+
+TEST(HighOrderMeasures, AreOfThePolynomials) {
+    const OnBoxes<3> boxes(WorldOptions{.levels = 1, .least_degree = 2, .greatest_degree = 4},
+                           gyroid);
+    const Prerolls prerolls(boxes.world, boxes.field);
+    const auto drawn = isosurface<3>(prerolls, 0.1, {.threshold = 0.3, .indicator = "error"});
+    const MeasuredError error = measure_error(prerolls, drawn.surface, 0.1, 20000);
+    const double seen = measured(boxes.world, drawn.surface, 0.1);
+    EXPECT_LE(error.value.greatest, drawn.error_bound + std::ldexp(4.0, -20));
+    EXPECT_GT(error.value.greatest, 0.5 * seen);
+    EXPECT_GT(error.value.mean, 0);
+    EXPECT_LT(error.distance.greatest, 0.2);
+    EXPECT_LT(error.back.greatest, 0.2);
+}
+
+TEST(HighOrderCollapses, RefuseWhatTheyDoNot) {
+    const OnBoxes<3> boxes(hanging_world(1), waves);
+    const Prerolls prerolls(boxes.world, boxes.field);
+    const auto draw = [&](Projection how) {
+        how.indicator = "error";
+        how.collapse = true;
+        (void)isosurface<3>(prerolls, 0.1, how);
+    };
+    expect_refused([&] { draw({.max_triangles = 1000}); }, "by no number of triangles");
+    expect_refused([&] { draw({.threshold = 1e-12}); }, "within an error of at least");
+    const DrawnWorld<CurvedWorld<DegreeWorld<3>>, DegreeField<3>> bent(
+        polynomial_bend(2, 0.1, 3), WorldOptions{.least_degree = 2}, square<3>);
+    const Prerolls curved(bent.world, bent.field);
+    expect_refused(
+        [&] {
+            (void)isosurface<3>(curved, 0.5,
+                                {.threshold = 0.1, .indicator = "error", .collapse = true});
+        },
+        "of curved cells are not collapsed");
 }
 
 // Positions of curved leaves.

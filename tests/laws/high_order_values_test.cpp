@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Drawings that look at the leaves of their level sets alone (VirtualOptions::values): they draw
-// the same, evaluate each of these leaves once, and keep nothing of others.
+// Drawings that look at the leaves of their level sets, slices and boundaries alone
+// (VirtualOptions::values, functions, boundary): they draw the same, evaluate each of these leaves
+// once, and keep nothing of others.
 #include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
 #include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/lens.hpp>
+#include <nestgrid/algorithms/slice.hpp>
 
 #include "curved_world.hpp"
 #include "degree_world.hpp"
@@ -139,6 +142,72 @@ TEST(HighOrderValues, CurvedLeavesAreDrawnTheSame) {
     comparison.expect_sense();
 }
 
+/// Slices, and boundaries, drawn from the leaves that they pass through are those drawn from all.
+template <class Drawn>
+void expect_same_slices(const Drawn& drawn, unsigned seed, std::size_t& triangles) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::array<Point, 3> normals{Point{1, 0, 0}, Point{1, 2, -1}, Point{0, 0, 1}};
+    const Plane plane({0.1 * (seed % 3), 0, 0.25 * (seed % 2)}, normals[seed % 3]);
+    const Sphere sphere({0.2, 0.1, 0}, 0.4);
+    const detail::Everywhere everywhere;
+    const std::array<const LevelFunction*, 3> all{&plane, &sphere, &everywhere};
+    const LevelFunction& function = *all[seed % 3];
+    const IsosurfaceOptions options{.cap = seed % 3 == 2 || seed % 4 == 0};
+    VirtualOptions at{std::pow(10.0, -0.3 - 0.3 * (seed % 3)), 3};
+    const auto draw = [&](const VirtualOptions& with, std::size_t threads) {
+        const VirtualRefinement fine(drawn.data, with);
+        return slice(fine, function, under(fine.criterion(), fine.bounds()), options,
+                     {ThreadExecutor(threads)});
+    };
+    const auto whole = draw(at, 1);
+    at.values.emplace();
+    at.functions = {&function};
+    at.boundary = options.cap;
+    const auto one = draw(at, 1);
+    const auto more = draw(at, 2 + seed % 2);
+    for (const auto* const other : {&one, &more}) {
+        expect_same(whole.surface, other->surface);
+        EXPECT_EQ(whole.surface.attributes, other->surface.attributes);
+        EXPECT_EQ(whole.error_bound, other->error_bound);
+        EXPECT_EQ(whole.position_bound, other->position_bound);
+        EXPECT_EQ(whole.counts.limited, other->counts.limited);
+    }
+    EXPECT_TRUE(std::isfinite(one.error_bound));
+    triangles += one.surface.simplices.size();
+}
+
+TEST(HighOrderValues, SlicesAndBoundariesAreDrawnTheSame) {
+    std::size_t triangles = 0;
+    for (unsigned seed = 1; seed <= 36; ++seed) {
+        expect_same_slices(OfBoxes<3>(world_at(seed), functions[seed % 4]), seed, triangles);
+    }
+    for (const Cells cells : {Cells::simplices, Cells::prisms, Cells::all}) {
+        for (unsigned seed = 1; seed <= 6; ++seed) {
+            WorldOptions options = world_at(seed);
+            options.cells = std::min<std::size_t>(options.cells, 2);
+            options.levels = std::min(options.levels, 2);
+            expect_same_slices(OfShapes<3>(cells, options, functions[seed % 4]), seed, triangles);
+        }
+    }
+    EXPECT_GT(triangles, 10000U);
+}
+
+TEST(HighOrderValues, SlicesAndBoundariesOfCurvedLeavesAreDrawnTheSame) {
+    std::size_t triangles = 0;
+    for (unsigned seed = 1; seed <= 12; ++seed) {
+        Bend bend = polynomial_bend(2 + static_cast<int>(seed % 3), 0.1, 3);
+        if (seed % 2 == 0) bend.least_degree = 1;
+        WorldOptions options = world_at(seed);
+        options.levels = std::min(options.levels, 2);
+        expect_same_slices(OfCurvedBoxes(bend, options, functions[seed % 4]), seed, triangles);
+        options.cells = std::min<std::size_t>(options.cells, 2);
+        options.levels = std::min(options.levels, 1);
+        expect_same_slices(OfCurvedShapes(bend, Cells::all, options, functions[seed % 4]), seed,
+                           triangles);
+    }
+    EXPECT_GT(triangles, 10000U);
+}
+
 /// A field that counts how often each leaf is evaluated, and at how many points.
 class Counted {
 public:
@@ -199,6 +268,28 @@ TEST(HighOrderValues, EvaluatesEachLeafOnceAndThoseOfADrawingOnceMore) {
     EXPECT_EQ(field.take_count(), 0U);  // passes nowhere
 }
 
+/// Leaves are read in chunks, and their owners may lie in later ones.
+TEST(HighOrderValues, ThreadsMakeTheSameData) {
+    const WorldOptions options{
+        .cells = 4, .levels = 4, .least_degree = 2, .greatest_degree = 4, .noise = 0.1};
+    const OfBoxes<3> one(options, gyroid);
+    EXPECT_GT(one.world.leaf_count(), 1500U);
+    const VirtualOptions at{.tolerance = 0.2, .depth = 4};
+    const auto whole = one.surface_of_all(0.25, at);
+    const auto expect_same_data = [&](const HighOrder& data) {
+        EXPECT_EQ(data.jump(), one.data.jump());
+        EXPECT_EQ(data.memory_bytes(), HighOrder(one.world, one.field).memory_bytes());
+        EXPECT_EQ(data.least_tolerance(), one.data.least_tolerance());
+        const VirtualRefinement fine(data, at);
+        const auto result = isosurface<3>(fine, 0.25, under(fine.criterion(), fine.bounds()));
+        expect_same(result.surface, whole.surface);
+        EXPECT_EQ(result.error_bound, whole.error_bound);
+    };
+    for (const std::size_t threads : {1U, 2U, 3U}) {
+        expect_same_data(HighOrder(one.world, one.field, ThreadExecutor(threads)));
+    }
+}
+
 TEST(HighOrderValues, FrontEndsLookAtTheLeavesThatTheyDraw) {
     const DegreeWorld<3> world(many_leaves, square<3>);
     const Counted field(world);
@@ -216,6 +307,13 @@ TEST(HighOrderValues, FrontEndsLookAtTheLeavesThatTheyDraw) {
     const std::array values{0.3, 0.5};
     const auto several = isosurfaces<3>(prerolls, std::span<const double>(values), within);
     expect_few("surfaces");
+    const auto cut = slice(prerolls, Plane({0, 0, 0.1}, {0, 0, 1}), within);
+    expect_few("a slice");
+    EXPECT_GT(cut.surface.simplices.size(), 100U);
+    const auto skin = boundary_surface(prerolls, within);
+    const std::size_t on_boundary = field.take_count();
+    EXPECT_GT(on_boundary, 0U);
+    EXPECT_LT(on_boundary, world.leaf_count());
     const HighOrder data(world, field);
     (void)field.take_count();
     const VirtualRefinement fine(data, {.tolerance = 0.05});

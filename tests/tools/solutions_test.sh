@@ -139,6 +139,22 @@ run probe solution.vtu --field u --points points
 awk -F, 'NR > 1 { u = exp(-12 * (($1 - 0.35) ^ 2 + ($2 - 0.6) ^ 2 + ($3 - 0.4) ^ 2)) + $1 / 5; d = $4 - u; if (d > 0.02 || d < -0.02) exit 1 }' out ||
     fail "probe: $(cat out)"
 
+# Fewer triangles within the error, what is measured of them, and colours of a slice.
+run isosurface solution.vtu --field u --value 0.3 --error 0.02
+drawn=$(value triangles)
+run isosurface solution.vtu --field u --value 0.3 --error 0.02 --collapse --measure
+[ "$(value triangles)" -lt "$drawn" ] || fail "no edge is collapsed: $(value triangles) of $drawn triangles"
+grep -q 'measured' out || fail "nothing is measured: $(cat out)"
+run slice solution.vtu --field u --axis z --at 0.4 --error 0.1
+drawn=$(value triangles)
+run slice solution.vtu --field u --axis z --at 0.4 --error 0.1 --colour-tolerance 0.01
+[ "$(value triangles)" -gt "$drawn" ] || fail "no triangle is split for its colours"
+
+run isosurface solution.vtu --field u --value 0.3 --error 0.1
+drawn=$(value triangles)
+run isosurface solution.vtu --field u --value 0.3 --error 0.1 --box 0,0.5,0,0.5,0,0.5 --box-threshold 0.005
+[ "$(value triangles)" -gt "$drawn" ] || fail "a box is no finer than what is around it"
+
 # Two threads, the same bits.
 run isosurface solution.vtu --field u --value 0.3 --error 0.01 --threads 1 -o one.vtp
 run isosurface solution.vtu --field u --value 0.3 --error 0.01 --threads 2 -o two.vtp
@@ -150,9 +166,9 @@ refused 1 "there is no field 'radios', only 'u', 'radius': did you mean 'radius'
 refused 1 'no threshold of nodes' isosurface solution.vtu --field u --value 0.3 --threshold 0.1 -o x.vtp
 refused 1 'even the coarsest surface has more than 3 triangles' \
     isosurface solution.vtu --field u --value 0.3 --max-triangles 3 -o x.vtp
-refused 1 'no collapse of edges' isosurface solution.vtu --field u --value 0.3 --error 0.1 --collapse -o x.vtp
+refused 1 'by no number of triangles' isosurface solution.vtu --field u --value 0.3 --max-triangles 500 --collapse -o x.vtp
 refused 1 '0 < finest <= coarsest' isosurface solution.vtu --field u --value 0.3 --lens ball:0.5,0.5,0.5,0.1 -o x.vtp
-refused 1 'are for fields of degree 1' isosurface solution.vtu --field u --value 0.3 --error 0.1 --measure -o x.vtp
+refused 1 'tolerance in the region is not a positive' isosurface solution.vtu --field u --value 0.3 --error 0.1 --box 0,0.5,0,0.5,0,0.5 -o x.vtp
 refused 1 "below 1e-12 of the range" isosurface solution.vtu --field u --value 0.3 --error 1e-15 -o x.vtp
 refused 1 "magnitude is for" isosurface solution.vtu --field u --value 0.3 --magnitude
 refused 1 "has 1 components, and none with number 2" isosurface solution.vtu --field u --component 2 --value 0.3

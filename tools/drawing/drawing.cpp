@@ -43,9 +43,13 @@ std::string millions(std::uint64_t count) {
 }
 
 /// Within an error of polynomials that is still to be said.
-Projection within_error(const SurfaceOptions& options, const DrawingRequest& request) {
+Projection within_error(const Moment& moment, const SurfaceOptions& options,
+                        const DrawingRequest& request) {
     return {.indicator = "error",
             .lens = request.lens,
+            .region = moment.projection().region,
+            .collapse = request.collapses,
+            .slice_distance = request.slice_distance,
             .position_error = options.projection.position_error};
 }
 
@@ -216,7 +220,7 @@ private:
             return count_triangles(prerolls(), both, at, most, {}, {work.executor});
         };
         if (const std::shared_ptr<const nestgrid::HighOrder> data = moment_.high_order()) {
-            Projection within = within_error(options_, request_);
+            Projection within = within_error(moment_, options_, request_);
             return nestgrid::least_threshold(
                 [&](double error, std::uint64_t most) {
                     within.threshold = error;
@@ -308,19 +312,15 @@ void require_error_alone(const DrawingRequest& request, const SurfaceOptions& op
         projection.indicator = "error";
     }
     projection.lens = request.lens;
-    projection.collapse = request.collapses;
     projection.keeps_distance = request.keeps_distances;
     projection.require_error_alone(degree);
-    if (request.box || request.measures || request.colour_tolerance > 0) {
-        throw InvalidInput("--box, --measure and --colour-tolerance are for fields of degree 1");
-    }
 }
 
 /// Draws a field of higher degree within each error, or each number of triangles.
 void draw_polynomials(const nestgrid::HighOrder& data, const Moment& moment,
                       const SurfaceOptions& options, const DrawingRequest& request,
                       const Drawing& drawing, const TakeWalk& take) {
-    const Projection within = within_error(options, request);
+    const Projection within = within_error(moment, options, request);
     std::vector<Projection> asked;
     for (const std::int64_t budget : options.budgets) {
         asked.push_back(within);

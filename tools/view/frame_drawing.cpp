@@ -50,12 +50,14 @@ auto FrameDrawing::with(double threshold, const Function& function) const {
     VirtualOptions options{.tolerance = std::max(threshold, data.least_tolerance(positions)),
                            .lens = request_.lens,
                            .position_tolerance = positions};
-    if (cuts_.empty() && !request_.collapses()) {
-        options.values.emplace();
-        for (const double isovalue : request_.isovalues) {
-            options.values->push_back(
-                {isovalue, request_.cap ? std::numeric_limits<double>::infinity() : isovalue});
-        }
+    options.values.emplace();
+    for (const double isovalue : request_.isovalues) {
+        options.values->push_back(
+            {isovalue, request_.cap ? std::numeric_limits<double>::infinity() : isovalue});
+    }
+    options.boundary = request_.boundary;
+    for (const Cut& cut : cuts_) {
+        if (!cut.cap) options.functions.push_back(cut.function.get());
     }
     const VirtualRefinement fine(data, options);
     const Hierarchy<double>& hierarchy = fine;

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <nestgrid/algorithms/indicator.hpp>
+#include <nestgrid/algorithms/level_function.hpp>
 #include <nestgrid/algorithms/projection.hpp>
 
 namespace nestgrid {
@@ -28,11 +29,15 @@ public:
     /// Borrows the hierarchy, or grid and field, which stay as they are. Asks the field once for
     /// each leaf, and in a drawing at most once for each that it looks at.
     /// \throw InvalidInput for other grids and fields, GridError for a wrong degree or value
-    explicit HighOrder(const Hierarchy<float>& base);
-    explicit HighOrder(const Hierarchy<double>& base);
+    /// \param executor with it several threads may ask for leaves at a time (executor.hpp)
+    explicit HighOrder(const Hierarchy<float>& base,
+                       const Executor& executor = SequentialExecutor{});
+    explicit HighOrder(const Hierarchy<double>& base,
+                       const Executor& executor = SequentialExecutor{});
     template <class Grid, class Field>
-    HighOrder(const Grid& grid, const Field& field)
-        : HighOrder(std::make_shared<const detail::ErasedHierarchy<Grid, Field>>(grid, field)) {}
+    HighOrder(const Grid& grid, const Field& field, const Executor& executor = SequentialExecutor{})
+        : HighOrder(std::make_shared<const detail::ErasedHierarchy<Grid, Field>>(grid, field),
+                    executor) {}
 
     int greatest_degree() const;
     /// The greatest degree of positions; 1: all leaves are straight.
@@ -54,8 +59,8 @@ private:
     friend class VirtualRefinement;
     friend class engine::PolynomialPoints;
     template <class Base>
-    explicit HighOrder(std::shared_ptr<const Base> base)
-        : HighOrder(static_cast<const Hierarchy<typename Base::value_type>&>(*base)) {
+    HighOrder(std::shared_ptr<const Base> base, const Executor& executor)
+        : HighOrder(static_cast<const Hierarchy<typename Base::value_type>&>(*base), executor) {
         base_ = std::move(base);
     }
     std::shared_ptr<const void> base_;
@@ -69,6 +74,9 @@ struct VirtualOptions {
     /// Elements stop only where they are as small as the lens asks, too, or at the depth limit. Its
     /// `finest` is positive.
     std::optional<LensRequest> lens{};
+    /// Elements in the region, or as near to it as three times their size, stop only within its
+    /// threshold, which is another tolerance, too.
+    std::optional<RegionRequest> region{};
     /// How far points of curved leaves may be from where they are drawn, in units of length; 0: the
     /// same share of the diameter of the domain as the tolerance is of the range of the data.
     double position_tolerance = 0;
@@ -77,6 +85,10 @@ struct VirtualOptions {
     /// the depth limit, with an error of the whole range. A cap takes all values from its isovalue
     /// on. Default: everything is drawn.
     std::optional<std::vector<std::array<double, 2>>> values{};
+    /// With `values`: the functions whose zeros are drawn beside these, borrowed until the
+    /// refinement is made, and whether the boundary of the domain is, all of it or in a part.
+    std::vector<const LevelFunction*> functions{};
+    bool boundary = false;
 };
 
 /// Leaves halved until what is drawn is within the tolerance, or at the depth limit

@@ -42,7 +42,8 @@ struct MeasuredError {
 MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn,
                             const Surface<3>& whole, double isovalue, std::size_t points = 200000,
                             const Work& work = {});
-/// The same, which draws the isosurface of all data.
+/// The same, which draws the isosurface of all data: of data of higher degree that within a tenth
+/// of what they are found to be off.
 MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
                             std::size_t points = 200000, const Work& work = {});
 

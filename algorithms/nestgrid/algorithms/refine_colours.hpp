@@ -37,6 +37,8 @@ ColourRefinement refine_colours(Surface<3>& surface, double tolerance, const Pro
 
 /// Refines the colours of a slice, a boundary, a flat shading, or an isosurface with attributes.
 /// Simplices are left as they are: their colours are exact. A side is halved at most ten times.
+/// Data of higher degree that are drawn within an error are probed themselves, and colour the
+/// vertices.
 /// \param surface drawn from the hierarchy; its attributes are the last components of the field.
 ///        Triangles keep their element and their order, new vertices come behind the others
 /// \param tolerance by which a colour may differ from P_S U inside an element whose map is affine,
@@ -46,12 +48,7 @@ ColourRefinement refine_colours(Surface<3>& surface, double tolerance, const Pro
 /// \throw InvalidInput where the tolerance is not a positive number, or the surface has no
 ///        attributes, more of them than the field has components, or reference coordinates
 /// \throw InvalidInput, GridError as probe()
-inline ColourRefinement refine_colours(Surface<3>& surface, const Prerolls& prerolls,
-                                       double tolerance, const Projection& projection = {},
-                                       const Work& work = {}) {
-    return detail::refine_colours(surface, tolerance, [&](std::span<const Point> points) {
-        return probe(prerolls, points, projection, work);
-    });
-}
+ColourRefinement refine_colours(Surface<3>& surface, const Prerolls& prerolls, double tolerance,
+                                const Projection& projection = {}, const Work& work = {});
 
 }  // namespace nestgrid
