@@ -57,11 +57,13 @@ public:
                    unsigned boundary);
     /// Draws the elements that were put aside, and the gaps between them and finer ones. Requires
     /// that the level is set, and that all elements have recorded.
-    void draw(DrawnSurface<dimension>& surface, Transitions<Real>& transitions);
+    /// \param keeps_memory of what was put aside; else it is freed while that is drawn
+    void draw(DrawnSurface<dimension>& surface, Transitions<Real>& transitions, bool keeps_memory);
 
 private:
     using Aside = typename Asides<Real>::Aside;
 
+    std::size_t expected(const Asides<Real>& asides) const;
     void describe(unsigned boundary);
     void find_face_keys();
     void draw(DrawnSurface<dimension>& surface, const Transitions<Real>& transitions,

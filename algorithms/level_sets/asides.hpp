@@ -62,6 +62,16 @@ public:
             function(begin, begin + block.used);
         }
     }
+    /// The same, and frees each block behind its call.
+    template <class Function>
+    void drain(Function&& function) {
+        for (Block& block : std::exchange(blocks_, {})) {
+            const std::unique_ptr<std::byte[]> memory = std::move(block.memory);  // NOLINT
+            function(memory.get(), memory.get() + block.used);
+        }
+        last_ = 0;
+        bytes_ = 0;
+    }
     /// Takes all back, and keeps the memory.
     void clear() {
         for (Block& block : blocks_) block.used = 0;
@@ -158,14 +168,13 @@ public:
     /// Calls function(aside) for each element.
     template <class Function>
     void for_each(Function&& function) const {
-        Aside aside{};
-        blocks_.for_each([&](const std::byte* begin, const std::byte* end) {
-            while (begin != end) {
-                begin += read(begin, aside);
-                function(std::as_const(aside));
-                ++aside.index;
-            }
-        });
+        blocks_.for_each(reader(function));
+    }
+    /// The same, and frees the memory of elements behind it. handle() is valid until it returns.
+    template <class Function>
+    void drain(Function&& function) {
+        blocks_.drain(reader(function));
+        clear();
     }
     /// A handle of the element, valid until the list changes. Requires that handles were added.
     Handle handle(const Aside& aside) const { return elements_.handle(aside.index); }
@@ -207,6 +216,18 @@ private:
         return count == 0 ? nullptr : array;
     }
 
+    /// Calls function(aside) for each element between two addresses.
+    template <class Function>
+    auto reader(Function& function) const {
+        return [this, &function, aside = Aside{}](const std::byte* begin,
+                                                  const std::byte* end) mutable {
+            while (begin != end) {
+                begin += read(begin, aside);
+                function(std::as_const(aside));
+                ++aside.index;
+            }
+        };
+    }
     /// Reads the element that begins at an address.
     /// \return its size in bytes
     std::size_t read(const std::byte* begin, Aside& aside) const {

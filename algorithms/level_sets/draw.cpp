@@ -181,6 +181,7 @@ std::vector<Isosurface<dimension>> draw_levels(const Levels<Real>& levels,
     const auto builders = make_builders(targets, chunks, options);
     const LevelSearch<Real> search(*walk, levels.levels, criterion, bounds);
     Drawing drawing(*walk, search, builders, options, levels.first_attribute);
+    drawing.draw_once();
     const bool cancelled = run_until_cancelled<Real>(drawing, executor, shared);
     std::vector<Isosurface<dimension>> results(count);
     for (std::size_t i = 0; i < count; ++i) {

@@ -147,14 +147,16 @@ void LevelSet<dimension, Real>::run(const Executor& executor) {
     for (Transitions<Real>& t : transitions_) {
         if (records_ && ranks != nullptr) t.record.exchange();
     }
+    if (!keeps_memory_) freed_bytes_ = table_bytes();
     alone([&] {
         tally_.begin_later();
         for (std::size_t i = 0; i < surfaces_.size(); ++i) {
             if (records_) {
                 at_hand_.cuts.set_level(search_->levels()[i]);
-                at_hand_.aside.draw(surfaces_[i], transitions_[i]);
+                at_hand_.aside.draw(surfaces_[i], transitions_[i], keeps_memory_);
             }
             surfaces_[i].builder().flush();
+            if (!keeps_memory_) surfaces_[i].free_names();
         }
     });
     if (options_->normals) normals_.complete(walk_->hierarchy());
@@ -246,11 +248,17 @@ void LevelSet<dimension, Real>::report(std::size_t i, Isosurface<dimension>& res
     result.position_bound = drawn.position_bound;
     if (surfaces_[i].builder().target() != nullptr) result.names = surfaces_[i].vertex_names();
     result.stack_bytes = static_cast<std::size_t>(deepest_ + 1) * sizeof(View);
-    result.table_bytes = normals_.memory_bytes() + neighbours_.memory_bytes();
-    for (const auto& surface : surfaces_) result.table_bytes += surface.memory_bytes();
+    result.table_bytes = std::max(freed_bytes_, table_bytes());
+}
+
+template <int dimension, class Real>
+std::size_t LevelSet<dimension, Real>::table_bytes() const {
+    std::size_t bytes = normals_.memory_bytes() + neighbours_.memory_bytes();
+    for (const auto& surface : surfaces_) bytes += surface.memory_bytes();
     for (const auto& t : transitions_) {
-        result.table_bytes += t.record.memory_bytes() + t.asides.memory_bytes();
+        bytes += t.record.memory_bytes() + t.asides.memory_bytes();
     }
+    return bytes;
 }
 
 template class LevelSet<2, float>;

@@ -33,6 +33,8 @@ public:
              std::span<const Builder> builders, const IsosurfaceOptions& options,
              std::size_t first_attribute);
 
+    /// Promises that begin() is not called again: memory is freed as soon as nothing needs it.
+    void draw_once() { keeps_memory_ = false; }
     /// Begins anew with other levels, as many as before, and keeps its memory.
     void begin(const LevelSearch<Real>& search, std::span<const Builder> builders);
     void run(const Executor& executor) override;
@@ -64,6 +66,7 @@ private:
     void join(const LevelSet& leader);
     void add(Base& part) override;
     void add_part(std::size_t level, const LevelSet& drawn);
+    std::size_t table_bytes() const;
     void walk_alone() override;
     bool knows_by_names(DrawnSurface<dimension>& surface) const;
     void extract(std::size_t level, const View& view, unsigned inside, unsigned boundary,
@@ -121,6 +124,8 @@ private:
     Normals<Real> normals_;
     AtHand at_hand_;
     int deepest_ = 0;
+    std::size_t freed_bytes_ = 0;  // of tables, when all of them were there
+    bool keeps_memory_ = true;
     bool bisects_ = false;  // takes() walks bisections in patches
     bool finest_ = false;   // edges are cut on their finest pieces
 };

@@ -100,6 +100,11 @@ public:
 
     /// Whether vertices have names.
     bool names_vertices() const { return builder_.shares_vertices() && !counts_only_; }
+    /// Forgets the names of all vertices, and frees their memory: behind the last named one.
+    void free_names() {
+        numbers_.free_memory();
+        within_ = {};
+    }
     Name name(const KeyPair& nodes) const { return numbers_.name(nodes); }
     /// Fetches what vertex(name) reads into the cache.
     void prefetch(const Name& name) const { numbers_.prefetch(name); }

@@ -81,9 +81,9 @@ inline void corner_gradients(const Topology& t, std::span<const Point> x,
 
 /// Gradients at nodes: the weighted mean of the gradients that are added at each.
 ///
-/// Memory: 40 bytes a node, in pieces of 1,024 nodes, and, in the hash table, 4 bytes a slot, of
-/// which at most five eighths are used. Nothing is reserved beyond that: surfaces have millions of
-/// nodes.
+/// Memory: 40 bytes a node, 8 of them without a gradient, in pieces of 1,024 nodes, and, in the
+/// hash table, 4 bytes a slot, of which at most five eighths are used. Nothing is reserved beyond
+/// that: surfaces have millions of nodes.
 class NodeGradients {
 public:
     using Index = std::uint32_t;
@@ -93,25 +93,33 @@ public:
         if (8 * (count_ + 1) > 5 * slots_.size()) grow();
         Index& at = place(node);
         if (at == none_) {
-            if (count_ == pieces_.size() * piece_) pieces_.push_back(std::make_unique<Piece>());
+            if (count_ == keys_.size() * piece_) {
+                keys_.push_back(std::make_unique<Keys>());
+                sums_.emplace_back();
+            }
             at = static_cast<Index>(count_++);
-            of(at) = {node, {}};
+            key(at) = node;
+            forget(at);
         }
         return at;
     }
     void add(Index slot, const CornerGradient& g) {
-        CornerGradient& sum = of(slot).sum;
+        std::unique_ptr<Sums>& piece = sums_[slot / piece_];
+        if (piece == nullptr) piece = std::make_unique<Sums>();
+        CornerGradient& sum = (*piece)[slot % piece_];
         sum.gradient = sum.gradient + g.weight * g.gradient;
         sum.weight += g.weight;
     }
     /// Makes a node one without gradients.
-    void forget(Index slot) { of(slot).sum = {}; }
-    bool known(Index slot) const { return of(slot).sum.weight > 0; }
-    Point mean(Index slot) const { return (1 / of(slot).sum.weight) * of(slot).sum.gradient; }
+    void forget(Index slot) {
+        if (sums_[slot / piece_] != nullptr) sum(slot) = {};
+    }
+    bool known(Index slot) const { return sums_[slot / piece_] != nullptr && sum(slot).weight > 0; }
+    Point mean(Index slot) const { return (1 / sum(slot).weight) * sum(slot).gradient; }
 
     /// How many slots there are, and the node of each.
     std::size_t count() const { return count_; }
-    NodeKey node(Index slot) const { return of(slot).key; }
+    NodeKey node(Index slot) const { return key(slot); }
 
     void clear() {
         std::ranges::fill(slots_, none_);
@@ -119,36 +127,38 @@ public:
     }
 
     std::size_t memory_bytes() const {
-        return slots_.capacity() * sizeof(Index) + pieces_.size() * sizeof(Piece);
+        const auto made = std::ranges::count_if(sums_, [](const auto& p) { return p != nullptr; });
+        return slots_.capacity() * sizeof(Index) + keys_.size() * sizeof(Keys) +
+               static_cast<std::size_t>(made) * sizeof(Sums);
     }
 
 private:
     static constexpr Index none_ = std::numeric_limits<Index>::max();
     static constexpr std::size_t piece_ = 1024;
 
-    struct Node {
-        NodeKey key;
-        CornerGradient sum;  // the weighted sum, and the sum of weights
-    };
-    using Piece = std::array<Node, piece_>;
+    using Keys = std::array<NodeKey, piece_>;
+    using Sums = std::array<CornerGradient, piece_>;  // weighted sums, and the sums of weights
 
-    Node& of(Index slot) { return (*pieces_[slot / piece_])[slot % piece_]; }
-    const Node& of(Index slot) const { return (*pieces_[slot / piece_])[slot % piece_]; }
+    NodeKey& key(Index slot) { return (*keys_[slot / piece_])[slot % piece_]; }
+    const NodeKey& key(Index slot) const { return (*keys_[slot / piece_])[slot % piece_]; }
+    CornerGradient& sum(Index slot) { return (*sums_[slot / piece_])[slot % piece_]; }
+    const CornerGradient& sum(Index slot) const { return (*sums_[slot / piece_])[slot % piece_]; }
 
     NESTGRID_INLINE Index& place(NodeKey node) {
         const std::size_t mask = slots_.size() - 1;
         auto at = static_cast<std::size_t>(nestgrid::detail::mix(node)) & mask;
-        while (slots_[at] != none_ && of(slots_[at]).key != node) at = (at + 1) & mask;
+        while (slots_[at] != none_ && key(slots_[at]) != node) at = (at + 1) & mask;
         return slots_[at];
     }
     NESTGRID_NOINLINE void grow() {
         slots_.assign(std::max<std::size_t>(1024, 2 * slots_.size()), none_);
-        for (Index i = 0; i < count_; ++i) place(of(i).key) = i;
+        for (Index i = 0; i < count_; ++i) place(key(i)) = i;
     }
 
-    std::vector<Index> slots_;                    // a hash table: by key of the node
-    std::vector<std::unique_ptr<Piece>> pieces_;  // nodes by slot
-    std::size_t count_ = 0;                       // of nodes
+    std::vector<Index> slots_;                 // a hash table: by key of the node
+    std::vector<std::unique_ptr<Keys>> keys_;  // of nodes, by slot
+    std::vector<std::unique_ptr<Sums>> sums_;  // by slot; null where no gradient was added
+    std::size_t count_ = 0;                    // of nodes
 };
 
 }  // namespace nestgrid::engine

@@ -181,6 +181,11 @@ public:
         if (elements_) surface_->element_of.push_back(last_element());
         for (const Point& x : reference) surface_->reference.push_back(x);
     }
+    /// Makes room for simplices that will be added to the surface that is filled, so that its
+    /// memory is not copied meanwhile.
+    void reserve_simplices(std::size_t more) {
+        if (target() != nullptr) surface_->simplices.reserve(surface_->simplices.size() + more);
+    }
     /// Adds several elements and all simplices from them, in their order. Where the builder does
     /// not keep elements, these may be left out.
     /// \param vertices, all the simplices, as for append_simplices()

@@ -88,6 +88,9 @@ public:
         round_ = 1;
     }
 
+    /// Empties the table, and frees its memory.
+    void free_memory() { *this = VertexNumbers(small_keys_); }
+
     std::size_t memory_bytes() const { return slots_.capacity() * sizeof(Slot); }
 
 private:

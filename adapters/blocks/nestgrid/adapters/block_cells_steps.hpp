@@ -247,28 +247,38 @@ double BlockCells<dim, Real>::value(const Node& node, Smooth& known) const {
 }
 
 template <int dim, class Real>
-bool BlockCells<dim, Real>::smooth_in_patch(const Element& e, NodeMask which,
-                                            std::span<Real> out) const {
+NodeMask BlockCells<dim, Real>::smooth_in_patch(const Element& e, NodeMask which,
+                                                std::span<Real> out) const {
     detail::PatchNumbers<dim, 4> cells;
-    if (!reader_.template read_patch<4>(e, cells)) return false;
+    const detail::Patch patch = reader_.template read_patch<4>(e, cells);
+    if (patch == detail::Patch::none) return which;
     const auto means = detail::means_in<dim, 4>(cells);
+    NodeMask left = 0;
     for (std::size_t n = 0; n < out.size(); ++n) {
         if ((which >> n & 1U) == 0) continue;
-        out[n] = static_cast<Real>(means[detail::number_in_split(reader_.grid().half(n))]);
+        const double mean = means[detail::number_in_split(reader_.grid().half(n))];
+        out[n] = static_cast<Real>(mean);
+        if (patch != detail::Patch::all && !std::isfinite(mean)) left |= NodeMask{1} << n;
     }
-    return true;
+    return left;
 }
 
 template <int dim, class Real>
-bool BlockCells<dim, Real>::sharp_in_patch(const Element& e, NodeMask which,
-                                           std::span<Real> out) const {
+NodeMask BlockCells<dim, Real>::sharp_in_patch(const Element& e, NodeMask which,
+                                               std::span<Real> out) const {
     detail::PatchNumbers<dim, 6> cells;
-    if (!reader_.template read_patch<6>(e, cells)) return false;
+    const detail::Patch patch = reader_.template read_patch<6>(e, cells);
+    if (patch == detail::Patch::none) return which;
+    const bool is_whole = patch == detail::Patch::all;
     const auto smooth = detail::means_in<dim, 6>(cells);
     const auto inner = detail::middle_of<dim, 6>(cells);
     auto residual = detail::means_in<dim, 5>(smooth);
     for (std::size_t i = 0; i < inner.size(); ++i) {
-        residual[i] = std::isfinite(residual[i]) ? inner[i] - residual[i] : 0;
+        if (!is_whole || std::isfinite(residual[i])) {
+            residual[i] = inner[i] - residual[i];
+        } else {
+            residual[i] = 0;
+        }
     }
     const auto means = detail::middle_of<dim, 5>(smooth);
     const auto more = detail::means_in<dim, 4>(residual);
@@ -276,6 +286,7 @@ bool BlockCells<dim, Real>::sharp_in_patch(const Element& e, NodeMask which,
         detail::combined<dim, 4>(inner, [](double a, double b) { return std::min(a, b); });
     const auto high =
         detail::combined<dim, 4>(inner, [](double a, double b) { return std::max(a, b); });
+    NodeMask left = 0;
     for (std::size_t n = 0; n < out.size(); ++n) {
         if ((which >> n & 1U) == 0) continue;
         const std::size_t at = detail::number_in_split(reader_.grid().half(n));
@@ -283,8 +294,9 @@ bool BlockCells<dim, Real>::sharp_in_patch(const Element& e, NodeMask which,
         out[n] = static_cast<Real>(
             is_number ? detail::sharpened(means[at], part() * more[at], low[at], high[at])
                       : means[at]);
+        if (!is_whole && !std::isfinite(means[at] + more[at])) left |= NodeMask{1} << n;
     }
-    return true;
+    return left;
 }
 
 template <int dim, class Real>

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include <nestgrid/adapters/block_grid.hpp>
 #include <nestgrid/adapters/block_patch.hpp>
@@ -75,6 +76,9 @@ bool is_leaf_missing(const BlockGrid<dim>& grid, const BlockArrays<dim, Real>& a
 
 namespace detail {
 
+/// How many cells of a patch have numbers.
+enum class Patch : std::uint8_t { none, some, all };
+
 /// Reads numbers of boxes.
 template <int dim, class Real>
 class BlockReader {
@@ -91,12 +95,12 @@ public:
         for (std::size_t d = 0; d < offset.size(); ++d) place[d] += offset[d];
         return array(cell).at(place);
     }
-    /// The numbers of the cells that an element is divided into, and of those around them; false
-    /// unless all are here, and leaves of one level.
+    /// The numbers of the cells that an element is divided into, and of those around them; NaN
+    /// where they are not here, or not leaves of the level that has such cells.
     /// \tparam width of the patch, in cells: 2 and twice the layers around
     template <std::size_t width>
-    bool read_patch(const typename BlockGrid<dim>::Element& divided,
-                    PatchNumbers<dim, width>& numbers) const;
+    Patch read_patch(const typename BlockGrid<dim>::Element& divided,
+                     PatchNumbers<dim, width>& numbers) const;
     /// Calls write(i, its finest place, a cell near it) for the nodes that are asked for. Returns
     /// those for which it answers false.
     template <class Write>
@@ -112,7 +116,8 @@ public:
     NodeMask at_new_nodes(const typename BlockGrid<dim>::Element& e, NodeMask which,
                           const Write& write) const {
         NodeMask missing = 0;
-        const BlockCell<dim> near = grid_->cover(e);
+        BlockCell<dim> near = grid_->cover(e);
+        if (near.box < 0) near = grid_->leaf_at(grid_->new_node(e, grid_->centre()), near);
         for (std::size_t n = 0; n < static_cast<std::size_t>(BlockGrid<dim>::max_new_nodes); ++n) {
             if ((which >> n & 1U) == 0) continue;
             if (!write(n, grid_->new_node(e, n), near)) missing |= NodeMask{1} << n;
@@ -162,11 +167,11 @@ public:
         return reader_.at_corners(i, writer(out, known));
     }
     NodeMask new_values(const Element& e, NodeMask which, std::span<Real> out) const {
-        const bool is_done = rule_ == CellRule::smooth ? smooth_in_patch(e, which, out)
-                                                       : sharp_in_patch(e, which, out);
-        if (is_done) return 0;
+        const NodeMask left = rule_ == CellRule::smooth ? smooth_in_patch(e, which, out)
+                                                        : sharp_in_patch(e, which, out);
+        if (left == 0) return 0;
         Smooth known(*this);
-        return reader_.at_new_nodes(e, which, writer(out, known));
+        return reader_.at_new_nodes(e, left, writer(out, known));
     }
     /// Gradients of the data themselves, not of what the values at nodes make of them: those of
     /// quadratic functions inside, also where levels meet, of linear ones at walls. 0 where numbers
@@ -229,10 +234,11 @@ private:
     }
     /// The share of the residuals that a sharp rule adds.
     double part() const { return rule_ == CellRule::sharp_centres ? 1.0 / 2 : 2.0 / 3; }
-    /// Values at new nodes of an element among leaves of one level, with the same bits; false
-    /// where levels meet or the domain ends.
-    bool smooth_in_patch(const Element& e, NodeMask which, std::span<Real> out) const;
-    bool sharp_in_patch(const Element& e, NodeMask which, std::span<Real> out) const;
+    /// Values at those new nodes of an element that lie among leaves of one level, with the same
+    /// bits. Returns the nodes that are left: where levels meet, the domain ends, or cells have no
+    /// numbers.
+    NodeMask smooth_in_patch(const Element& e, NodeMask which, std::span<Real> out) const;
+    NodeMask sharp_in_patch(const Element& e, NodeMask which, std::span<Real> out) const;
 
     detail::BlockReader<dim, Real> reader_;
     CellRule rule_;
@@ -324,35 +330,46 @@ bool is_leaf_missing(const BlockGrid<dim>& grid, const BlockArrays<dim, Real>& a
 
 template <int dim, class Real>
 template <std::size_t width>
-bool detail::BlockReader<dim, Real>::read_patch(const typename BlockGrid<dim>::Element& divided,
-                                                PatchNumbers<dim, width>& numbers) const {
+detail::Patch detail::BlockReader<dim, Real>::read_patch(
+    const typename BlockGrid<dim>::Element& divided, PatchNumbers<dim, width>& numbers) const {
     BlockPatch<dim> patch;
-    if (!grid_->patch_around(divided, (width - 2) / 2, patch)) return false;
-    CellRange<dim> range{patch.low, patch.low};
-    for (std::int32_t& x : range.high) x += static_cast<std::int32_t>(width);
+    if (!grid_->patch_around(divided, (width - 2) / 2, patch)) return Patch::none;
+    constexpr auto side = static_cast<std::int32_t>(width);
     std::size_t i = 0;
-    if (patch.is_in_box) {
+    if (patch.is_in_box && patch.is_whole) {
         const BlockCell<dim> first = grid_->cell_at(patch.level, patch.low, patch.box);
-        if (!has(first)) return false;
-        for (std::size_t d = 0; d < range.low.size(); ++d) {
-            range.high[d] += first.place[d] - range.low[d];
-            range.low[d] = first.place[d];
-        }
+        if (!has(first)) return Patch::none;
+        CellRange<dim> range{first.place, first.place};
+        for (std::int32_t& x : range.high) x += side;
         const BlockArray<dim, Real>& of_box = array(first);
         for_each_place(range, [&](const BlockPlace<dim>& place) {
             numbers[i++] = static_cast<double>(of_box.at(place));
         });
-        return true;
+        return Patch::all;
     }
-    BlockCell<dim> cell;
-    cell.box = patch.box;
-    bool is_here = true;
-    for_each_place(range, [&](const BlockPlace<dim>& place) {
-        cell = grid_->cell_at(patch.level, place, cell.box);
-        is_here = is_here && has(cell);
-        if (is_here) numbers[i++] = static_cast<double>(read(cell));
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const auto number = [&](const BlockPlace<dim>& place) -> double& {
+        std::size_t at = 0;
+        for (std::size_t d = place.size(); d-- > 0;) {
+            at = at * width + static_cast<std::size_t>(place[d] - patch.low[d]);
+        }
+        return numbers[at];
+    };
+    numbers.fill(none);
+    bool are_all_here = patch.is_whole;
+    grid_->for_each_part(patch, side, [&](BlockCell<dim> cell, const CellRange<dim>& part) {
+        are_all_here = are_all_here && has(cell);
+        if (!has(cell)) return;
+        const BlockPlace<dim> first = cell.place;
+        for_each_place(part, [&](const BlockPlace<dim>& place) {
+            for (std::size_t d = 0; d < first.size(); ++d) {
+                cell.place[d] = first[d] + place[d] - part.low[d];
+            }
+            number(place) = static_cast<double>(read(cell));
+        });
     });
-    return is_here;
+    grid_->for_each_covered(patch, side, [&](const BlockPlace<dim>& cell) { number(cell) = none; });
+    return are_all_here ? Patch::all : Patch::some;
 }
 
 }  // namespace nestgrid

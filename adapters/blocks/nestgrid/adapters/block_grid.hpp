@@ -40,12 +40,14 @@ struct BlockCell {
     std::array<std::int32_t, static_cast<std::size_t>(dim)> low{};    ///< finest, of its first node
 };
 
-/// Cells of one level that are leaves: a cube or square of them.
+/// A cube or square of places for cells of one level.
 template <int dim>
 struct BlockPatch {
     std::int32_t level = 0;
-    std::int32_t box = -1;  ///< that holds the middle
-    bool is_in_box = false;
+    std::int32_t box = -1;   ///< that holds the middle
+    bool is_in_box = false;  ///< all of the patch is
+    bool is_whole = false;   ///< at all places there are leaves of the level
+    bool has_finer = false;  ///< at some there are finer leaves
     std::array<std::int32_t, static_cast<std::size_t>(dim)> low{};  ///< of the level
 };
 
@@ -120,6 +122,8 @@ public:
     Node place(NodeKey key) const;
     /// The place of a new node in its element, in halves of an edge.
     const Place& half(std::size_t n) const { return halves_[n]; }
+    /// The number of the new node in the middle of an element.
+    static constexpr std::size_t centre() { return max_new_nodes - 1; }
     /// The finest place of a new node of an element, and of a corner.
     Place new_node(const Element& e, std::size_t n) const;
     Place corner(const Element& e, std::size_t k) const;
@@ -135,10 +139,19 @@ public:
     /// The leaf that holds a finest cell of the domain.
     /// \param near whose box is looked at first
     BlockCell<dim> leaf_at(const Place& cell, const BlockCell<dim>& near) const;
-    /// The cells that an element is divided into, with layers of cells around them; false unless
-    /// all of these are leaves of one level.
+    /// The cells that an element is divided into, with layers of cells around them; false where no
+    /// level has cells of that size.
     bool patch_around(const Element& divided, std::int32_t layers, BlockPatch<dim>& patch) const;
-    /// A cell of a level, in its box, which holds it or is looked for.
+    /// Calls f(first cell, range of cells) for each part of a patch that lies in one box of its
+    /// level.
+    /// \param side of the patch, in cells
+    template <class Function>
+    void for_each_part(const BlockPatch<dim>& patch, std::int32_t side, Function&& f) const;
+    /// Calls f(cell) for the cells of a patch that finer boxes cover.
+    template <class Function>
+    void for_each_covered(const BlockPatch<dim>& patch, std::int32_t side, Function&& f) const;
+    /// A cell of a level, in its box, which holds it or is looked for; no box where the level has
+    /// no such cell.
     /// \param guess a box of the level, looked at first
     BlockCell<dim> cell_at(std::int32_t level, const Place& cell, std::int32_t guess) const;
     /// The leaves around a node.
@@ -164,7 +177,23 @@ private:
     unsigned finest_depth() const { return levels_.back().depth; }
     void number_nodes();
     void mix_epoch(const Blocks<dim>& blocks);
+    /// How the nodes of a box are numbered, or those of level 0: along x first.
+    struct Numbering {
+        std::uint64_t first = 0;
+        detail::CellRange<dim> box;
+
+        NodeKey key(const Place& node) const {
+            std::uint64_t number = 0;
+            for (std::size_t d = node.size(); d-- > 0;) {
+                number = number * (static_cast<std::uint64_t>(box.high[d] - box.low[d]) + 1) +
+                         static_cast<std::uint64_t>(node[d] - box.low[d]);
+            }
+            return NodeKey{first + number};
+        }
+    };
+    Numbering numbering(std::size_t level, std::int32_t box) const;
     NodeKey key(Place node, unsigned depth, std::size_t level, std::int32_t guess) const;
+    std::int32_t box_around(const Element& e, std::size_t level) const;
     std::uint64_t owned_at_border(const Level& level, std::int32_t box, std::int32_t ratio) const;
     bool is_within(const Place& node, const BlockCell<dim>& near, Around& around) const;
     BlockCell<dim> leaf_at(const Place& cell, std::span<std::int32_t> guess) const;

@@ -4,6 +4,7 @@
 // Definitions of BlockGrid. Included at the end of block_grid.hpp.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -150,6 +151,13 @@ std::int32_t BlockGrid<dim>::first_touching(const Level& level, const Place& nod
     return first;
 }
 
+template <int dim>
+auto BlockGrid<dim>::numbering(std::size_t level, std::int32_t box) const -> Numbering {
+    if (level == 0) return {0, {{}, cells_}};
+    const auto owner = static_cast<std::size_t>(box);
+    return {levels_[level].first_node[owner], levels_[level].finder.boxes()[owner]};
+}
+
 /// \param node in cells of a depth
 /// \param level the coarsest one on whose lattice it lies
 /// \param guess a box of the level, or -1
@@ -158,23 +166,25 @@ NodeKey BlockGrid<dim>::key(Place node, unsigned depth, std::size_t level,
                             std::int32_t guess) const {
     const unsigned to = levels_[level].depth;
     for (std::int32_t& x : node) x = depth < to ? x << (to - depth) : x >> (depth - to);
-    detail::CellRange<dim> box{{}, cells_};
-    std::uint64_t first = 0;
-    if (level > 0) {
-        const auto owner = static_cast<std::size_t>(first_touching(levels_[level], node, guess));
-        box = levels_[level].finder.boxes()[owner];
-        first = levels_[level].first_node[owner];
-    }
-    std::uint64_t number = 0;
-    for (std::size_t d = size_; d-- > 0;) {
-        number = number * (static_cast<std::uint64_t>(box.high[d] - box.low[d]) + 1) +
-                 static_cast<std::uint64_t>(node[d] - box.low[d]);
-    }
-    return NodeKey{first + number};
+    const std::int32_t owner = level == 0 ? -1 : first_touching(levels_[level], node, guess);
+    return numbering(level, owner).key(node);
+}
+
+/// A box of a level around an element, or -1: most of its corners lie inside that.
+template <int dim>
+std::int32_t BlockGrid<dim>::box_around(const Element& e, std::size_t level) const {
+    const Level& of = levels_[level];
+    if (of.depth > e.depth) return e.finer;
+    Place cell = e.cell;
+    for (std::int32_t& x : cell) x >>= e.depth - of.depth;
+    return of.finder.find(cell);
 }
 
 template <int dim>
 void BlockGrid<dim>::corner_keys(const Element& e, std::span<NodeKey> out) const {
+    constexpr std::int32_t unknown = -2;
+    std::array<std::int32_t, 32> around;  // by level
+    std::fill_n(around.begin(), levels_.size(), unknown);
     for (std::size_t k = 0; k < out.size(); ++k) {
         Place node = e.cell;
         std::uint32_t all = std::uint32_t{1} << e.depth;
@@ -183,17 +193,32 @@ void BlockGrid<dim>::corner_keys(const Element& e, std::span<NodeKey> out) const
             all |= static_cast<std::uint32_t>(node[d]);
         }
         const auto coarsest = e.depth - static_cast<unsigned>(std::countr_zero(all));
-        out[k] = key(node, e.depth, level_for_[coarsest], -1);
+        const std::size_t level = level_for_[coarsest];
+        std::int32_t& box = around[level];
+        if (box == unknown) box = level == 0 ? -1 : box_around(e, level);
+        out[k] = key(node, e.depth, level, box);
     }
 }
 
+/// New nodes inside one box, or of level 0, are numbered by it, without a search for each.
 template <int dim>
 void BlockGrid<dim>::new_keys(const Element& e, std::span<NodeKey> out) const {
     const unsigned depth = e.depth + 1U;
+    const std::size_t level = level_for_[depth];
+    const unsigned steps = levels_[level].depth - depth;
+    Place first = e.cell;
+    for (std::int32_t& x : first) x <<= steps + 1;
+    const Numbering numbers = numbering(level, e.finer);
+    bool is_inside = true;
+    for (std::size_t d = 0; d < size_; ++d) {
+        const std::int32_t last = first[d] + (2 << steps);
+        is_inside = is_inside && numbers.box.low[d] < first[d] && last < numbers.box.high[d];
+    }
     for (std::size_t n = 0; n < out.size(); ++n) {
-        Place node{};
-        for (std::size_t d = 0; d < size_; ++d) node[d] = 2 * e.cell[d] + halves_[n][d];
-        out[n] = key(node, depth, level_for_[depth], e.finer);
+        Place node = first;
+        for (std::size_t d = 0; d < size_; ++d) node[d] += halves_[n][d] << steps;
+        out[n] = level == 0 || is_inside ? numbers.key(node)
+                                         : key(node, levels_[level].depth, level, e.finer);
     }
 }
 

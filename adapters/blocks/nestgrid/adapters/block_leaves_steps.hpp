@@ -142,6 +142,13 @@ auto BlockGrid<dim>::place(NodeKey key) const -> Node {
         node.place[d] = (range.low[d] + static_cast<std::int32_t>(rest % count)) * extent(level);
         rest /= count;
     }
+    if (level == 0) {
+        Place cell = node.place;
+        for (std::size_t d = 0; d < size_; ++d) {
+            cell[d] = std::min(cell[d] / extent(0), cells_[d] - 1);
+        }
+        node.near.box = levels_[0].finder.find(cell);
+    }
     return node;
 }
 
@@ -238,14 +245,52 @@ bool BlockGrid<dim>::patch_around(const Element& divided, std::int32_t layers,
     patch.low = range.low;
     const auto& box = level.finder.boxes()[static_cast<std::size_t>(patch.box)];
     patch.is_in_box = range.clipped(box).count() == range.count();
-    if (!patch.is_in_box && level.finder.count_within(range) != range.count()) return false;
+    patch.is_whole = patch.is_in_box || level.finder.count_within(range) == range.count();
+    patch.has_finer = false;
     if (l + 1 == levels_.size()) return true;
     const Level& next = levels_[l + 1];
     for (std::size_t d = 0; d < size_; ++d) {
         range.low[d] <<= next.depth - level.depth;
         range.high[d] <<= next.depth - level.depth;
     }
-    return next.finder.count_within(range) == 0;
+    patch.has_finer = next.finder.count_within(range) != 0;
+    patch.is_whole = patch.is_whole && !patch.has_finer;
+    return true;
+}
+
+template <int dim>
+template <class Function>
+void BlockGrid<dim>::for_each_part(const BlockPatch<dim>& patch, std::int32_t side,
+                                   Function&& f) const {
+    detail::CellRange<dim> range{patch.low, patch.low};
+    for (std::int32_t& x : range.high) x += side;
+    const auto& finder = levels_[static_cast<std::size_t>(patch.level)].finder;
+    finder.for_each_part_within(range, [&](std::int32_t box, const detail::CellRange<dim>& part) {
+        f(cell_at(patch.level, part.low, box), part);
+        return true;
+    });
+}
+
+template <int dim>
+template <class Function>
+void BlockGrid<dim>::for_each_covered(const BlockPatch<dim>& patch, std::int32_t side,
+                                      Function&& f) const {
+    if (!patch.has_finer) return;
+    const Level& next = levels_[static_cast<std::size_t>(patch.level) + 1];
+    const unsigned steps = next.depth - levels_[static_cast<std::size_t>(patch.level)].depth;
+    detail::CellRange<dim> range{patch.low, patch.low};
+    for (std::size_t d = 0; d < size_; ++d) {
+        range.low[d] <<= steps;
+        range.high[d] = (patch.low[d] + side) << steps;
+    }
+    next.finder.for_each_part_within(range, [&](std::int32_t, detail::CellRange<dim> part) {
+        for (std::size_t d = 0; d < size_; ++d) {  // boxes are aligned, bins need not be
+            part.low[d] >>= steps;
+            part.high[d] = ((part.high[d] - 1) >> steps) + 1;
+        }
+        detail::for_each_place(part, f);
+        return true;
+    });
 }
 
 template <int dim>
@@ -253,6 +298,7 @@ BlockCell<dim> BlockGrid<dim>::cell_at(std::int32_t level, const Place& cell,
                                        std::int32_t guess) const {
     const Level& of = levels_[static_cast<std::size_t>(level)];
     BlockCell<dim> found{level, of.finder.find(cell, guess), cell, cell};
+    if (found.box < 0) return found;
     const auto& box = of.finder.boxes()[static_cast<std::size_t>(found.box)];
     for (std::size_t d = 0; d < size_; ++d) {
         found.place[d] -= box.low[d];
