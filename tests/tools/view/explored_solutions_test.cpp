@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <explored_samples.hpp>
+#include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
+#include <nestgrid/algorithms/isosurfaces.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
@@ -84,6 +86,48 @@ TEST(Polynomials, AreDrawnWithinErrorsAndNumbersOfTriangles) {
         expect_refused([&] { frame_of(explorer, std::string("isovalue=0.1&") + none); },
                        "data of higher degree are drawn within an error or a number of triangles");
     }
+}
+
+/// A frame reads the leaves that its parts meet alone, and has the parts of all leaves.
+template <class Page>
+void expect_parts_of_all_leaves(Page& page) {
+    const HighOrder data(page.world, page.field);
+    const Sphere sphere({0.1, 0.2, 0.3}, 0.4);
+    const std::array isovalues{0.1, 0.4};
+    for (const double error : {0.3, 0.05}) {
+        const VirtualRefinement fine(data, {.tolerance = error});
+        const Projection within = under(fine.criterion(), fine.bounds());
+        const auto surfaces = isosurfaces<3>(fine, isovalues, within);
+        const auto cut = slice(fine, sphere, within);
+        const auto hull = boundary_surface(fine, within);
+        EXPECT_GT(surfaces[1].surface.simplices.size(), 0U);
+        const std::string finely = "&error=" + text_of(error);
+        const Frame frame =
+            frame_of(page.explorer, "isovalue=0.1,0.4&boundary=on&sphere=0.1,0.2,0.3,0.4" + finely);
+        expect_part(frame, "slice", cut.surface);
+        expect_part(frame, "boundary", hull.surface);
+        expect_part(frame, "isosurface", surfaces[0].surface);
+        expect_part(frame_of(page.explorer, "isovalue=0.4,0.1" + finely), "isosurface",
+                    surfaces[1].surface);
+        expect_part(frame_of(page.explorer, "boundary=on" + finely), "boundary", hull.surface);
+        expect_part(frame_of(page.explorer, "sphere=0.1,0.2,0.3,0.4" + finely), "slice",
+                    cut.surface);
+    }
+}
+
+TEST(Polynomials, PartsAreThoseOfAllLeaves) {
+    InPage<DegreeWorld<3>> page(
+        WorldOptions{.levels = 1, .least_degree = 2, .greatest_degree = 4, .seed = 5}, wave);
+    expect_parts_of_all_leaves(page);
+}
+
+TEST(CurvedLeaves, PartsAreThoseOfAllLeaves) {
+    const Bend bend{[](const Point& x) {
+        return Point{x[0] + 0.1 * x[1] * x[1], x[1] - 0.1 * x[0] * x[2], x[2]};
+    }};
+    InPage<CurvedWorld<DegreeWorld<3>>> page(
+        bend, WorldOptions{.least_degree = 2, .greatest_degree = 2}, wave);
+    expect_parts_of_all_leaves(page);
 }
 
 /// A frame of curved leaves is that of the library within the same error of positions.
