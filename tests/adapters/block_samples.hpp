@@ -187,13 +187,16 @@ public:
                     stored.lower[d] -= ghosts;
                     stored.upper[d] += ghosts;
                 }
+                // What nobody may read: no number, or a wrong one, in turns.
+                const bool is_number = values_.size() % 2 == 1;
+                const double unread = is_number ? 1e30 : std::numeric_limits<double>::quiet_NaN();
                 auto& values = values_.emplace_back();
                 for_each_cell(stored, [&](const Cell<dim>& c) {
                     bool inside = true;
                     for (std::size_t d = 0; d < c.size(); ++d) {
                         inside = inside && own.lower[d] <= c[d] && c[d] <= own.upper[d];
                     }
-                    double value = std::numeric_limits<double>::quiet_NaN();
+                    double value = unread;
                     if (centring == BlockCentring::nodes) {
                         if (inside) value = f(cells.at(l, c, 0));
                     } else if (inside && cells.is_leaf(l, c)) {

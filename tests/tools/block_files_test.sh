@@ -64,13 +64,22 @@ for file in thirds.htg uneven.htg; do
     cmp -s alone.vtp timed.vtp || fail "$file: the surface at the time of a file is another one"
 done
 # Pieces of several processes are one grid, with the bits of it, also where levels change between.
+# So are trees that are counted along z first.
 for name in thirds uneven even plane_thirds plane_even; do
     a=isosurface v=--value
     [[ $name == plane_* ]] && a=isolines v=--values
     run $a $name.htg --field dist $v 0 --threshold 2e-3 -o whole.vtp
-    run $a $name.phtg --field dist $v 0 --threshold 2e-3 -o pieces.vtp
-    cmp -s whole.vtp pieces.vtp || fail "$name: pieces have another surface: $(cat out)"
-    run info $name.htg && cp out whole && run info $name.phtg && cmp -s out whole || fail "$name: $(diff out whole)"
+    run info $name.htg && cp out whole
+    for other in $name.phtg ${name}_turned.htg; do
+        run $a $other --field dist $v 0 --threshold 2e-3 -o other.vtp
+        cmp -s whole.vtp other.vtp || fail "$other has another surface: $(cat out)"
+        run info $other && cmp -s out whole || fail "$other: $(diff out whole)"
+    done
+done
+# Where half of the trees are ghosts, or are not there, the other half is drawn, all of it.
+for file in ghosts.htg missing.htg; do
+    run slice $file --field dist --axis z --at 0.4 --threshold 0
+    [ "$(value area)" = 0.5 ] || fail "$file: the slice of one half: $(cat out)"
 done
 sed 's/even_1/even_2/' even.phtg >twice.phtg
 refused 1 "'twice.phtg': the piece 'even_2.htg': it has tree [0-9]+, which an earlier piece has, too" info twice.phtg
@@ -214,6 +223,10 @@ edited athena.athdf thin.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 8]
 refused 1 "'thin.athdf': its blocks are one cell thick along x or y: of slices, those across z are read" info thin.athdf
 edited athena.athdf line.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 1], ">i4")'
 refused 1 "'line.athdf': it has 1 dimension, not 2 or 3" info line.athdf
+edited chombo.hdf5 no_fields.hdf5 'file.attrs["num_components"] = np.int32(0)'
+refused 1 "'no_fields.hdf5': it has no data of cells" info no_fields.hdf5
+sed 's/vtkOverlappingAMR/vtkNonOverlappingAMR/' amr.vthb >other.vthb
+refused 1 "'other.vthb': it holds vtkNonOverlappingAMR, not vtkOverlappingAMR" info other.vthb
 mv amr/amr_3.vti amr/gone.vti
 refused 1 "^nestgrid: 'amr.vthb': " info amr.vthb
 truncate -s 300000 athena.athdf

@@ -163,15 +163,17 @@ def write_trees(
     across: int = 2,
     place: float = 0,
     owner: Callable[[int], int] | None = None,
+    is_turned: bool = False,
 ) -> None:
     """A hyper tree grid with values at the centres of all cells.
 
     corners: coordinates of the corners of trees, one array a direction; divide(level, centre);
     of two directions: in the plane across an axis at a place of it; owner: whether a tree is one of
-    this piece, 0, a ghost, 1, or not here, 2
+    this piece, 0, a ghost, 1, or not here, 2; is_turned: whether trees are counted along z first
     """
     dim = len(corners)
     trees = vtk.vtkHyperTreeGrid()
+    trees.SetTransposedRootIndexing(is_turned)
     in_space = list(corners)
     if dim == 2:
         in_space.insert(across, np.array([place]))
@@ -199,7 +201,7 @@ def write_trees(
         if owner is not None and owner(tree) == 2:
             continue
         trees.InitializeNonOrientedCursor(cursor, tree, True)
-        at = [tree // int(np.prod(counts[:d])) % counts[d] for d in range(dim)]
+        at = list(np.unravel_index(tree, counts, "C" if is_turned else "F"))
         low = np.array([x[i] for x, i in zip(corners, at)])
         write(0, low, np.array([x[i + 1] for x, i in zip(corners, at)]) - low)
         ghosts += [0 if owner is None else owner(tree)] * (len(centres) - len(ghosts))
@@ -444,6 +446,10 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
         write_trees(path("even.htg"), even, 2, fields, near)
         for name, corners, factor in (("thirds", even, 3), ("uneven", uneven, 2), ("even", even, 2)):
             write_pieces(path(f"{name}.phtg"), corners, factor, fields, near)
+            write_trees(path(f"{name}_turned.htg"), corners, factor, fields, near, is_turned=True)
+        for name, hidden in (("ghosts", 1), ("missing", 2)):
+            half = lambda tree: hidden if tree % 8 < 4 else 0  # noqa: E731, B023
+            write_trees(path(f"{name}.htg"), even, 2, fields, near, owner=half)
     for axis, name in enumerate("xyz" if dim == 2 else ""):
         write_vthb(path(f"across_{name}.vthb"), dim, fields, axis, 0.3)
         for factor in (2, 3):

@@ -63,6 +63,7 @@ void put(const BlockFile& file, Parcel& out) {
         levels.push_back({level.ratio, level.boxes.size()});
         boxes.insert(boxes.end(), level.boxes.begin(), level.boxes.end());
     }
+    if (file.fields.empty()) throw InvalidInput("it has no data of cells");
     std::vector<FieldHead> fields;
     std::string names;
     for (const BlockFile::Field& field : file.fields) {

@@ -118,7 +118,6 @@ BlockFile blocks_of_vtk(const vtkSmartPointer<vtkOverlappingAMR>& amr,
     file.time = time_in(*amr);
     file.blocks = file.dimension == 2 ? boxes_in<2>(*amr) : boxes_in<3>(*amr);
     file.fields = std::move(fields);
-    if (file.fields.empty()) throw InvalidInput("it has no data of cells");
     file.numbers = [amr, all = file.fields, is_double, is_flat = file.dimension == 2](
                        std::size_t field, int component) {
         const std::string& name = all.at(field).name;

@@ -22,7 +22,11 @@ template <class Data, class Read>
 vtkSmartPointer<Data> read_quietly(const Read& read) {
     const vtkSmartPointer<vtkDataObject> data = read_quietly(read);
     vtkSmartPointer<Data> result = Data::SafeDownCast(data);
-    if (result == nullptr) throw nestgrid::InvalidInput("it holds nothing of what it should");
+    if (result == nullptr) {
+        const std::string given = data == nullptr ? "nothing" : data->GetClassName();
+        throw nestgrid::InvalidInput("it holds " + given + ", not " +
+                                     vtkSmartPointer<Data>::New()->GetClassName());
+    }
     return result;
 }
 

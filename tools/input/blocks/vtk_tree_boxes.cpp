@@ -14,33 +14,18 @@ namespace {
 using nestgrid::InvalidInput;
 using Place = std::array<int, 3>;
 
-bool is_hidden(vtkHyperTreeGrid& grid, vtkIdType index) {
-    vtkUnsignedCharArray* const ghosts = grid.GetGhostCells();
-    return (grid.HasMask() && grid.GetMask()->GetValue(index) != 0) ||
-           (ghosts != nullptr && ghosts->GetValue(index) != 0);
-}
-
 /// The boxes below one tree.
 class BoxesOfTree {
 public:
     BoxesOfTree(TreeBoxes& out, vtkHyperTree& tree) : out_{&out}, tree_{&tree} {}
 
-    struct Cell {
-        vtkIdType vertex = 0;
-        bool is_hidden = false;
-    };
-    vtkIdType number(const Cell& cell) const {
-        return cell.is_hidden ? -1 : tree_->GetGlobalIndexFromLocal(cell.vertex);
-    }
-    Cell cell(vtkIdType vertex, bool hidden) const {
-        return {vertex, hidden || ::is_hidden(*out_->grid, tree_->GetGlobalIndexFromLocal(vertex))};
-    }
     /// Adds boxes as long as all cells of one are divided, then goes on in each part.
-    void add_below(const Cell& top, std::size_t level, Place place) {
-        if (tree_->IsLeaf(top.vertex)) return;
-        std::vector<Cell> cells{top};
+    /// \param top a cell, by its number in the tree
+    void add_below(vtkIdType top, std::size_t level, Place place) {
+        if (tree_->IsLeaf(top)) return;
+        std::vector<vtkIdType> cells{top};
         int side = 1;
-        const auto is_leaf = [&](const Cell& each) { return tree_->IsLeaf(each.vertex); };
+        const auto is_leaf = [&](vtkIdType each) { return tree_->IsLeaf(each); };
         while (std::none_of(cells.begin(), cells.end(), is_leaf)) {
             cells = divided(cells, side);
             side *= 2;
@@ -58,23 +43,23 @@ public:
     }
 
 private:
-    std::vector<Cell> divided(const std::vector<Cell>& cells, int side) const {
+    std::vector<vtkIdType> divided(const std::vector<vtkIdType>& cells, int side) const {
         const bool is_flat = out_->dimension == 2;
-        std::vector<Cell> result(cells.size() * (is_flat ? 4 : 8));
+        std::vector<vtkIdType> result(cells.size() * (is_flat ? 4 : 8));
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const int n = static_cast<int>(i);
             const Place at{2 * (n % side), 2 * (n / side % side), 2 * (n / side / side)};
-            const vtkIdType first =
-                tree_->GetElderChildIndex(static_cast<unsigned>(cells[i].vertex));
+            const vtkIdType first = tree_->GetElderChildIndex(static_cast<unsigned>(cells[i]));
             for (int c = 0; c < (is_flat ? 4 : 8); ++c) {
                 const int to = ((at[2] + (c >> 2)) * 2 * side + at[1] + (c >> 1 & 1)) * 2 * side +
                                at[0] + (c & 1);
-                result[static_cast<std::size_t>(to)] = cell(first + c, cells[i].is_hidden);
+                result[static_cast<std::size_t>(to)] = first + c;
             }
         }
         return result;
     }
-    void add_box(const std::vector<Cell>& cells, std::size_t level, const Place& low, int side) {
+    void add_box(const std::vector<vtkIdType>& cells, std::size_t level, const Place& low,
+                 int side) {
         if (level == out_->blocks.levels.size()) {
             out_->blocks.levels.emplace_back().ratio = {2, 2, out_->dimension == 2 ? 1 : 2};
             out_->cells.emplace_back();
@@ -83,7 +68,7 @@ private:
         for (int d = 0; d < out_->dimension; ++d) high[static_cast<std::size_t>(d)] += side - 1;
         out_->blocks.levels[level].boxes.push_back({low, high});
         auto& numbers = out_->cells[level].emplace_back();
-        for (const Cell& each : cells) numbers.push_back(number(each));
+        for (const vtkIdType each : cells) numbers.push_back(tree_->GetGlobalIndexFromLocal(each));
     }
 
     TreeBoxes* out_;
@@ -128,7 +113,16 @@ void require_masks(vtkHyperTreeGrid& grid) {
     }
 }
 
-bool trees_have_one_size(vtkHyperTreeGrid& grid) {
+bool trees_fill_boxes(vtkHyperTreeGrid& grid) {
+    require_masks(grid);
+    vtkUnsignedCharArray* const ghosts = grid.GetGhostCells();
+    for (vtkIdType i = 0; i <= grid.GetGlobalNodeIndexMax(); ++i) {
+        if (grid.HasMask() && grid.GetMask()->GetValue(i) != 0) return false;
+        if (ghosts != nullptr && ghosts->GetValue(i) != 0) return false;
+    }
+    for (vtkIdType t = 0; t < grid.GetMaxNumberOfTrees(); ++t) {
+        if (grid.GetTree(t) == nullptr) return false;
+    }
     const auto along = coordinates_of(grid);
     return std::ranges::all_of(
         along, [](vtkDataArray* each) { return each->GetNumberOfTuples() < 2 || is_even(*each); });
@@ -138,24 +132,21 @@ TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid) {
     const unsigned* const points = grid->GetDimensions();
     TreeBoxes out{grid, points[2] == 1 ? 2 : 3, {}, {}};
     place_trees(out);
-    require_masks(*grid);
     const int deep = out.dimension == 2 ? 1 : static_cast<int>(points[2]) - 1;
     const Place last{static_cast<int>(points[0]) - 2, static_cast<int>(points[1]) - 2, deep - 1};
     out.blocks.levels.push_back({{{{0, 0, 0}, last}}, {}});
     const auto trees = static_cast<std::size_t>(grid->GetMaxNumberOfTrees());
-    out.cells.push_back({std::vector<vtkIdType>(trees, -1)});
+    out.cells.push_back({std::vector<vtkIdType>(trees)});
     for (vtkIdType t = 0; t < grid->GetMaxNumberOfTrees(); ++t) {
         vtkHyperTree* const tree = grid->GetTree(t);
-        if (tree == nullptr) continue;
         std::array<unsigned, 3> at{};
         grid->GetLevelZeroCoordinatesFromIndex(t, at[0], at[1], at[2]);
         const Place place{static_cast<int>(at[0]), static_cast<int>(at[1]),
                           static_cast<int>(at[2])};
         BoxesOfTree boxes(out, *tree);
-        const BoxesOfTree::Cell root = boxes.cell(0, false);
         const int number = (place[2] * (last[1] + 1) + place[1]) * (last[0] + 1) + place[0];
-        out.cells[0][0][static_cast<std::size_t>(number)] = boxes.number(root);
-        boxes.add_below(root, 0, place);
+        out.cells[0][0][static_cast<std::size_t>(number)] = tree->GetGlobalIndexFromLocal(0);
+        boxes.add_below(0, 0, place);
     }
     return out;
 }

@@ -13,8 +13,7 @@
 
 #include "input/blocks/block_file.hpp"
 
-/// A grid, its boxes, and for each cell of them its number in the arrays of the grid, -1 where it
-/// is hidden or has no tree.
+/// A grid, its boxes, and for each cell of them its number in the arrays of the grid.
 struct TreeBoxes {
     vtkSmartPointer<vtkHyperTreeGrid> grid;
     int dimension;
@@ -26,9 +25,9 @@ struct TreeBoxes {
 std::array<vtkDataArray*, 3> coordinates_of(vtkHyperTreeGrid& grid);
 /// \throw nestgrid::InvalidInput where its mask or its ghost array is too short
 void require_masks(vtkHyperTreeGrid& grid);
-/// Whether all trees are as long in each direction.
-bool trees_have_one_size(vtkHyperTreeGrid& grid);
+/// Whether all trees are there and as long in each direction, and all cells are shown.
+/// \throw nestgrid::InvalidInput as require_masks()
+bool trees_fill_boxes(vtkHyperTreeGrid& grid);
 
-/// \param grid of trees of one size that are divided by two, in space or in a plane of constant z
-/// \throw nestgrid::InvalidInput where its mask or its ghost array is too short
+/// \param grid trees_fill_boxes(), which are divided by two, in space or in a plane of constant z
 TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid);

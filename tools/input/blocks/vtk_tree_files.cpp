@@ -3,7 +3,6 @@
 //
 // Hyper tree grids of VTK (.htg, .phtg), which VTK reads in child processes. Where they are boxes
 // of cells they are drawn as such, otherwise as trees.
-#include <limits>
 #include <tuple>
 
 #include <vtkCellData.h>
@@ -64,8 +63,7 @@ BoxNumbers numbers_of(const TreeBoxes& trees, vtkDataArray& data, int component)
         for (std::size_t b = 0; b < trees.cells[l].size(); ++b) {
             auto& own = values->emplace_back();
             for (const vtkIdType i : trees.cells[l][b]) {
-                own.push_back(i < 0 ? std::numeric_limits<Real>::quiet_NaN()
-                                    : static_cast<Real>(data.GetComponent(i, component)));
+                own.push_back(static_cast<Real>(data.GetComponent(i, component)));
             }
             auto& array = arrays.emplace_back();
             array.first = own.data();
@@ -86,14 +84,13 @@ BlockFile open_htg(const fs::path& path) {
     if (!head_of(*grid).holds_boxes) {
         throw InvalidInput(
             "its trees are no boxes, unlike those of the first file: they are divided by three, of "
-            "several sizes, or in a plane across x or y");
+            "several sizes, in a plane across x or y, or some cells are hidden");
     }
     const auto trees = std::make_shared<const TreeBoxes>(tree_boxes(grid));
     BlockFile file;
     file.dimension = trees->dimension;
     file.blocks = trees->blocks;
     std::tie(file.fields, file.is_double) = fields_in(*grid->GetCellData());
-    if (file.fields.empty()) throw InvalidInput("it has no data of cells");
     file.numbers = [trees, file_fields = file.fields, is_double = file.is_double](std::size_t field,
                                                                                   int component) {
         vtkDataArray* const data =

@@ -55,6 +55,7 @@ bool have_one_lattice(vtkHyperTreeGrid& a, vtkHyperTreeGrid& b) {
         }
     }
     return a.GetBranchFactor() == b.GetBranchFactor() &&
+           a.GetTransposedRootIndexing() == b.GetTransposedRootIndexing() &&
            std::equal(a.GetDimensions(), a.GetDimensions() + 3, b.GetDimensions());
 }
 

@@ -20,19 +20,26 @@ namespace {
 using nestgrid::InvalidInput;
 namespace fs = std::filesystem;
 
-/// All cells of a grid, tree by tree, depth first.
+/// All cells of a grid, tree by tree, along x first, each depth first.
 struct TreeRecords {
-    std::vector<vtkIdType> trees;
+    std::vector<vtkIdType> trees;  ///< their numbers along x first, however the file counts them
     std::vector<std::uint8_t> cells;
     std::vector<vtkIdType> numbers;  ///< of the cells, in the arrays of the grid
 
     explicit TreeRecords(vtkHyperTreeGrid& grid) : ghosts_{grid.GetGhostCells()} {
         if (grid.HasMask()) mask_ = grid.GetMask();
         require_masks(grid);
-        for (vtkIdType t = 0; t < grid.GetMaxNumberOfTrees(); ++t) {
+        const unsigned* const points = grid.GetDimensions();
+        const auto along = [&](int d) { return points[d] == 1 ? 1 : points[d] - 1; };
+        for (vtkIdType number = 0; number < grid.GetMaxNumberOfTrees(); ++number) {
+            const auto i = static_cast<unsigned>(number % along(0));
+            const auto j = static_cast<unsigned>(number / along(0) % along(1));
+            const auto k = static_cast<unsigned>(number / along(0) / along(1));
+            vtkIdType t = 0;
+            grid.GetIndexFromLevelZeroCoordinates(t, i, j, k);
             vtkHyperTree* const tree = grid.GetTree(t);
             if (tree == nullptr) continue;
-            trees.push_back(t);
+            trees.push_back(number);
             add(*tree, 0, false);
         }
         if (trees.empty()) throw InvalidInput("it has no trees");
@@ -162,7 +169,7 @@ TreeHead head_of(vtkHyperTreeGrid& grid) {
                            std::to_string(d) + ", but another number of coordinates");
     }
     const bool is_across_z = head.dimension == 3 || points[2] == 1;
-    head.holds_boxes = head.holds_boxes && is_across_z && trees_have_one_size(grid);
+    head.holds_boxes = head.holds_boxes && is_across_z && trees_fill_boxes(grid);
     return head;
 }
 
