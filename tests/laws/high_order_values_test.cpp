@@ -153,18 +153,21 @@ void expect_same_slices(const Drawn& drawn, unsigned seed, std::size_t& triangle
     const std::array<const LevelFunction*, 3> all{&plane, &sphere, &everywhere};
     const LevelFunction& function = *all[seed % 3];
     const IsosurfaceOptions options{.cap = seed % 3 == 2 || seed % 4 == 0};
-    VirtualOptions at{std::pow(10.0, -0.3 - 0.3 * (seed % 3)), 3};
+    const VirtualOptions at{std::pow(10.0, -0.3 - 0.3 * (seed % 3)), 3};
     const auto draw = [&](const VirtualOptions& with, std::size_t threads) {
         const VirtualRefinement fine(drawn.data, with);
         return slice(fine, function, under(fine.criterion(), fine.bounds()), options,
                      {ThreadExecutor(threads)});
     };
-    const auto whole = draw(at, 1);
-    at.values.emplace();
-    at.functions = {&function};
-    at.boundary = options.cap;
-    const auto one = draw(at, 1);
-    const auto more = draw(at, 2 + seed % 2);
+    VirtualOptions alone = at;
+    alone.values.emplace();
+    alone.functions = {&function};
+    alone.boundary = options.cap;
+    const auto one = draw(alone, 1);
+    const std::size_t kept = drawn.data.memory_bytes();
+    const auto more = draw(alone, 2 + seed % 2);
+    const auto whole = draw(at, 1);  // last, as polynomials of all leaves serve all drawings
+    EXPECT_LE(kept, drawn.data.memory_bytes());
     for (const auto* const other : {&one, &more}) {
         expect_same(whole.surface, other->surface);
         EXPECT_EQ(whole.surface.attributes, other->surface.attributes);
