@@ -211,6 +211,28 @@ TEST(HighOrderValues, SlicesAndBoundariesOfCurvedLeavesAreDrawnTheSame) {
     EXPECT_GT(triangles, 10000U);
 }
 
+/// A plane that meets one curved leaf where it bulges, and no hull of corners.
+TEST(HighOrderValues, SlicesOfWhatLeavesTheHullOfCornersAreDrawn) {
+    const Bend bulge{[](const Point& x) {
+        const double by = 0.2 * (1 - x[1] * x[1]) * (1 - x[2] * x[2]);
+        return Point{x[0] * (1 + by), x[1], x[2]};
+    }};
+    const OfCurvedBoxes drawn(bulge, WorldOptions{.cells = 1}, gyroid);
+    const Plane plane({1.1, 0, 0}, {1, 0, 0});
+    VirtualOptions at{.tolerance = 0.3, .position_tolerance = 0.02};
+    at.values.emplace();
+    at.functions = {&plane};
+    const auto draw = [&] {
+        const VirtualRefinement fine(drawn.data, at);
+        return slice(fine, plane, under(fine.criterion(), fine.bounds()));
+    };
+    const auto alone = draw();
+    EXPECT_GT(alone.surface.simplices.size(), 10U);
+    EXPECT_EQ(alone.counts.limited, 0U);
+    at.values.reset();
+    expect_same(alone.surface, draw().surface);
+}
+
 /// A field that counts how often each leaf is evaluated, and at how many points.
 class Counted {
 public:
