@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <high_order/function_ranges.hpp>
 #include <nestgrid/detail/coarse_boundary.hpp>
 #include <nestgrid/error.hpp>
 
@@ -145,38 +146,21 @@ void HighOrderData::look_at_places(const VirtualOptions& options, std::vector<bo
         base->corners(task, e.member->element, e.shape->corners, nullptr, nullptr, &faces);
         return faces != 0;
     };
-    const auto passes = [&](std::size_t leaf, const BaseElement& e) {
-        std::array<Point, max_corners> x = e.x;
-        double beyond = e.moved;
-        if (places) {
-            beyond = static_cast<double>(places->summary.beyond_hull[leaf]);
-            for (std::size_t k = 0; k < e.shape->corners; ++k) {
-                const double* const at = places->nodes.values(e.key[k]);
-                x[k] = {at[0], at[1], at[2]};
-            }
-        }
-        const auto corners = std::span<const Point>(x).first(e.shape->corners);
-        for (std::size_t f = 0; f < functions.count(); ++f) {
-            std::array<double, max_corners> at;
-            for (std::size_t k = 0; k < corners.size(); ++k) at[k] = functions.at<double>(f, x[k]);
-            const auto [least, greatest] =
-                std::minmax_element(at.begin(), at.begin() + corners.size());
-            const auto range = functions.range(f, corners, {*least, *greatest}, at[0], beyond);
-            // A drawing rounds what is this near to 0.
-            const double near = 4 * functions.tolerance(f);
-            if (range.least <= near && range.greatest >= -near) return true;
-        }
-        return false;
-    };
+    FunctionRanges ranges(functions, field.nodes, places ? &places->nodes : nullptr,
+                          options.tolerance);
     std::size_t number = 0;
-    walk.for_each(
-        [&](Task* task, std::span<const BaseElement> way) {
-            const BaseElement& e = way.back();
-            if (e.member->rule != nullptr) return;
-            if (!leaves[number]) leaves[number] = on_boundary(task, way) || passes(number, e);
-            ++number;
-        },
-        BaseWalk::Positions::yes);
+    const auto look = [&](Task* task, std::span<const BaseElement> way) {
+        const BaseElement& e = way.back();
+        ranges.enter(way);
+        if (e.member->rule != nullptr) return;
+        const double beyond =
+            places ? static_cast<double>(places->summary.beyond_hull[number]) : e.moved;
+        if (!leaves[number]) {
+            leaves[number] = on_boundary(task, way) || ranges.pass(e, way.size() - 1, beyond);
+        }
+        ++number;
+    };
+    walk.for_each(look, BaseWalk::Positions::yes);
 }
 
 std::shared_ptr<const GatheredLeaves> HighOrderData::gathered(const VirtualOptions& options) const {

@@ -136,6 +136,9 @@ double measured(const Problem& problem, std::size_t count, const Corner& corner)
 struct Drawing {
     double triangles;
     double error;
+    double through_file;  // seconds
+    double in_memory;
+    double contour_alone;
 };
 
 /// The cells of DataOut, divided n times along each direction, and VTK's contour of them.
@@ -179,21 +182,23 @@ Drawing subdivided(const Problem& problem, unsigned n, const std::string& name) 
     print(name + "_measured", error);
     print(name + "_open_edges_with_boundary",
           static_cast<double>(edges->GetOutput()->GetNumberOfCells()));
-    print(name + "_seconds_through_file", drawn - begin);
-    print(name + "_seconds_in_memory", built - begin + drawn - read);
-    print(name + "_seconds_contour_alone", drawn - read);
-    return {static_cast<double>(count), error};
+    const Drawing made{static_cast<double>(count), error, drawn - begin,
+                       built - begin + drawn - read, drawn - read};
+    print(name + "_seconds_through_file", made.through_file);
+    print(name + "_seconds_in_memory", made.in_memory);
+    print(name + "_seconds_contour_alone", made.contour_alone);
+    return made;
 }
 
-/// How many triangles uniform subdivision needs for an error, between and beyond its drawings,
-/// whose error is a power of the number of triangles.
-double triangles_at(const std::vector<Drawing>& drawings, double error) {
+/// What uniform subdivision needs for an error, between and beyond its drawings, of which the error
+/// is a power.
+double needed_at(const std::vector<Drawing>& drawings, double error, double Drawing::*what) {
     std::size_t i = 1;
     while (i + 1 < drawings.size() && drawings[i].error > error) ++i;
     const Drawing& a = drawings[i - 1];
     const Drawing& b = drawings[i];
     const double t = std::log(error / a.error) / std::log(b.error / a.error);
-    return a.triangles * std::pow(b.triangles / a.triangles, t);
+    return a.*what * std::pow(b.*what / a.*what, t);
 }
 
 double run(unsigned degree, bool quick) {
@@ -201,7 +206,7 @@ double run(unsigned degree, bool quick) {
     const std::string name = "q" + std::to_string(degree);
     print(name + "_cells", problem.triangulation.n_active_cells());
     std::vector<Drawing> uniform;
-    for (const unsigned n : {1U, 2U, 4U}) {
+    for (const unsigned n : {1U, 2U, 4U, 5U}) {
         if (quick && n > 2) break;
         uniform.push_back(subdivided(problem, n, name + "_uniform_" + std::to_string(n)));
     }
@@ -209,7 +214,8 @@ double run(unsigned degree, bool quick) {
     const DealiiField<3, DoubleVector> field(grid, problem.dofs, problem.values);
     const double begin = seconds();
     const HighOrder data(grid, field);
-    print(name + "_once_seconds", seconds() - begin);
+    const double once = seconds() - begin;
+    print(name + "_once_seconds", once);
     print(name + "_once_bytes_a_cell",
           static_cast<double>(data.memory_bytes()) / problem.triangulation.n_active_cells());
     double ratios = 0;
@@ -219,7 +225,12 @@ double run(unsigned degree, bool quick) {
         const double start = seconds();
         const VirtualRefinement fine = looking_at_level_set(data, tolerance);
         const auto result = isosurface<3>(fine, isovalue, under(fine.criterion(), fine.bounds()));
-        print(at + "_seconds", seconds() - start);
+        const double first = seconds() - start;
+        print(at + "_seconds", first);
+        const double again = seconds();
+        (void)isosurface<3>(fine, isovalue, under(fine.criterion(), fine.bounds()));
+        const double next = seconds() - again;
+        print(at + "_next_seconds", next);
         const auto& surface = result.surface;
         const double error = measured(problem, surface.simplices.size(), [&](std::size_t t, int k) {
             return surface.vertices[surface.simplices[t][static_cast<std::size_t>(k)]];
@@ -229,7 +240,12 @@ double run(unsigned degree, bool quick) {
         print(at + "_bound", result.error_bound);
         print(at + "_measured", error);
         print(at + "_open_edges", static_cast<double>(surface_report(surface).open_edges));
-        const double ratio = triangles / triangles_at(uniform, error);
+        const double ratio = triangles / needed_at(uniform, error, &Drawing::triangles);
+        print(at + "_file_of_first",
+              needed_at(uniform, error, &Drawing::through_file) / (once + first));
+        print(at + "_memory_of_first",
+              needed_at(uniform, error, &Drawing::in_memory) / (once + first));
+        print(at + "_contour_of_next", needed_at(uniform, error, &Drawing::contour_alone) / next);
         print(at + "_of_uniform", ratio);
         ratios += std::log(ratio);
         if (quick && tolerance < 0.05) break;

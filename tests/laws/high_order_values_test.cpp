@@ -153,18 +153,21 @@ void expect_same_slices(const Drawn& drawn, unsigned seed, std::size_t& triangle
     const std::array<const LevelFunction*, 3> all{&plane, &sphere, &everywhere};
     const LevelFunction& function = *all[seed % 3];
     const IsosurfaceOptions options{.cap = seed % 3 == 2 || seed % 4 == 0};
-    VirtualOptions at{std::pow(10.0, -0.3 - 0.3 * (seed % 3)), 3};
+    const VirtualOptions at{std::pow(10.0, -0.3 - 0.3 * (seed % 3)), 3};
     const auto draw = [&](const VirtualOptions& with, std::size_t threads) {
         const VirtualRefinement fine(drawn.data, with);
         return slice(fine, function, under(fine.criterion(), fine.bounds()), options,
                      {ThreadExecutor(threads)});
     };
-    const auto whole = draw(at, 1);
-    at.values.emplace();
-    at.functions = {&function};
-    at.boundary = options.cap;
-    const auto one = draw(at, 1);
-    const auto more = draw(at, 2 + seed % 2);
+    VirtualOptions alone = at;
+    alone.values.emplace();
+    alone.functions = {&function};
+    alone.boundary = options.cap;
+    const auto one = draw(alone, 1);
+    const std::size_t kept = drawn.data.memory_bytes();
+    const auto more = draw(alone, 2 + seed % 2);
+    const auto whole = draw(at, 1);  // last, as polynomials of all leaves serve all drawings
+    EXPECT_LE(kept, drawn.data.memory_bytes());
     for (const auto* const other : {&one, &more}) {
         expect_same(whole.surface, other->surface);
         EXPECT_EQ(whole.surface.attributes, other->surface.attributes);
@@ -206,6 +209,28 @@ TEST(HighOrderValues, SlicesAndBoundariesOfCurvedLeavesAreDrawnTheSame) {
                            triangles);
     }
     EXPECT_GT(triangles, 10000U);
+}
+
+/// A plane that meets one curved leaf where it bulges, and no hull of corners.
+TEST(HighOrderValues, SlicesOfWhatLeavesTheHullOfCornersAreDrawn) {
+    const Bend bulge{[](const Point& x) {
+        const double by = 0.2 * (1 - x[1] * x[1]) * (1 - x[2] * x[2]);
+        return Point{x[0] * (1 + by), x[1], x[2]};
+    }};
+    const OfCurvedBoxes drawn(bulge, WorldOptions{.cells = 1}, gyroid);
+    const Plane plane({1.1, 0, 0}, {1, 0, 0});
+    VirtualOptions at{.tolerance = 0.3, .position_tolerance = 0.02};
+    at.values.emplace();
+    at.functions = {&plane};
+    const auto draw = [&] {
+        const VirtualRefinement fine(drawn.data, at);
+        return slice(fine, plane, under(fine.criterion(), fine.bounds()));
+    };
+    const auto alone = draw();
+    EXPECT_GT(alone.surface.simplices.size(), 10U);
+    EXPECT_EQ(alone.counts.limited, 0U);
+    at.values.reset();
+    expect_same(alone.surface, draw().surface);
 }
 
 /// A field that counts how often each leaf is evaluated, and at how many points.

@@ -121,6 +121,18 @@ def test_lenses_ask_for_small_elements():
     assert fine.error_bound <= 0.05 * (1 + 1e-6)
 
 
+def test_edges_are_collapsed_and_regions_are_finer():
+    mesh = box(3, 3, 3)
+    field = nestgrid.Cells(*mesh, waves(mesh[0]))
+    plain = field.isosurface(0.4, error=0.02)
+    fewer = field.isosurface(0.4, error=0.02, collapse=True)
+    assert len(fewer.triangles) < len(plain.triangles)
+    assert fewer.report()["open_edges"] == 0
+    assert fewer.error_bound <= 0.02 * (1 + 1e-6)
+    region = nestgrid.Region(nestgrid.ball((0.5, 0.5, 0.5), 0.2), 0.002)
+    assert len(field.isosurface(0.4, error=0.02, region=region).triangles) > len(plain.triangles)
+
+
 def test_ghosts_and_cells_of_lower_dimension_are_left_out(tmp_path):
     points, types, offsets, connectivity = mesh = box(3, 3, 2)
     values = waves(points)
@@ -210,8 +222,11 @@ def test_refusals_name_what_is_wrong(tmp_path):
     points, types, offsets, connectivity = box(3, 2, 2)
     values = waves(points)
     good = nestgrid.Cells(points, types, offsets, connectivity, values)
-    for arguments in ({"threshold": 0.1}, {"error": 0.1, "collapse": True}, {"max_triangles": 100, "collapse": True}):
-        with pytest.raises(nestgrid.InvalidInput, match="the field has degree 2"):
+    for arguments, sentence in (
+        ({"threshold": 0.1}, "the field has degree 2"),
+        ({"max_triangles": 100, "collapse": True}, "by no number of triangles"),
+    ):
+        with pytest.raises(nestgrid.InvalidInput, match=sentence):
             good.isosurface(0.4, **arguments)
     with pytest.raises(nestgrid.InvalidInput, match="cell 3 is of VTK's type 42"):
         nestgrid.Cells(points, np.where(np.arange(8) == 3, 42, types), offsets, connectivity, values)
