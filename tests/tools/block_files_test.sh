@@ -238,7 +238,7 @@ del group["dist"]
 group["dist"] = twice'
 refused 1 "Grid00000003 has not one number of 'dist' for each cell" info longer_enzo/data0000.hierarchy
 edited athena.athdf part.athdf 'file["LogicalLocations"][-1] = 0'
-refused 1 "'part.athdf': level [12] has [0-9] blocks in the place of that from .* which they do not fill" info part.athdf
+refused 1 "'part.athdf': level [12] has [0-9] of the 8 blocks that replace the one from .* of level [01]" info part.athdf
 edited athena.athdf thin.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 8], ">i4")'
 refused 1 "'thin.athdf': its blocks are one cell thick along x or y: of slices, those across z are read" info thin.athdf
 edited athena.athdf line.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 1], ">i4")'

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -106,13 +107,13 @@ void add_parents(Blocks<dim>& blocks) {
         if (l == 0) break;
         for (const BlockBox<dim>& box : blocks.levels[l - 1].boxes) parents.erase(box.lower);
         for (const auto& [lower, children] : parents) {
-            double all = 1;
+            std::int64_t all = 1;
             for (const int ratio : level.ratio) all *= ratio;
             if (children != all) {
-                throw InvalidInput("level " + std::to_string(l) + " has " +
-                                   std::to_string(children) + " blocks in the place of that from " +
-                                   detail::text_of_place(lower) + " of level " +
-                                   std::to_string(l - 1) + ", which they do not fill");
+                throw InvalidInput(
+                    "level " + std::to_string(l) + " has " + std::to_string(children) + " of the " +
+                    std::to_string(all) + " blocks that replace the one from " +
+                    detail::text_of_place(lower) + " of level " + std::to_string(l - 1));
             }
             BlockBox<dim> box{lower, lower};
             for (std::size_t d = 0; d < lower.size(); ++d) box.upper[d] += size[d] - 1;
