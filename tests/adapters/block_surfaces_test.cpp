@@ -88,13 +88,18 @@ Blocks<dim> random_leaf_blocks(unsigned seed, int levels) {
     return blocks;
 }
 
-/// As FLASH and Athena++ store them. The parents have no data.
+/// As Athena++ stores them. The parents have no data.
 template <int dim>
 void expect_leaf_blocks_closed() {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         const Blocks<dim> leaves = random_leaf_blocks<dim>(seed, 3);
         Blocks<dim> blocks = leaves;
         add_parents(blocks);
+        Blocks<dim> again = blocks;
+        add_parents(again);  // none is missing
+        for (std::size_t l = 0; l < blocks.levels.size(); ++l) {
+            EXPECT_EQ(again.levels[l].boxes.size(), blocks.levels[l].boxes.size());
+        }
         const BlockGrid<dim> grid(blocks);
         const BlockData<dim> all(blocks, [](const Point& x) { return norm(x) - 0.31; });
         BlockArrays<dim, double> arrays = all.arrays();

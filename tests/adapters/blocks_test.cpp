@@ -245,6 +245,12 @@ TEST(Blocks, SayWhatIsWrong) {
         Blocks<3> blocks = two_levels();
         add_parents(blocks);
     });
+    rows.add("leaves that replace a block in part", [] {
+        Blocks<3> blocks = two_levels();
+        blocks.levels[0].boxes.clear();
+        blocks.levels[1].boxes = {{{0, 0, 0}, {3, 3, 3}}};
+        add_parents(blocks);
+    });
 }
 
 /// Leaves out a box, so that the others do not fill the hull that they have still.

@@ -10,7 +10,7 @@ make_files() { mkdir -p "$1" && /usr/bin/python3 -B "$maker" "$1"; }
 maker=$2
 . "$(dirname "$0")/functions.sh" "$1" true
 make_files . || exit 1
-files=(amr.vthb trees.htg run_hdf5_plt_cnt_0000 enzo/data0000.hierarchy chombo.hdf5 athena.athdf)
+files=(amr.vthb trees.htg {run,leaves}_hdf5_plt_cnt_0000 {,old_}enzo/data0000.hierarchy chombo.hdf5 athena.athdf)
 
 for file in "${files[@]}"; do
     run info "$file"
@@ -34,8 +34,8 @@ done
 awk -v area="$(head -1 areas)" 'BEGIN { exit !(area > 1.11 && area < 1.135) }' ||
     fail "a sphere of 0.36 pi has the area $(head -1 areas)"
 
-for file in plane_amr.vthb plane_trees.htg plane_run_hdf5_plt_cnt_0000 plane_enzo/data0000.hierarchy \
-    plane_chombo.hdf5 plane_athena.athdf; do
+for file in plane_amr.vthb plane_trees.htg plane_{run,leaves}_hdf5_plt_cnt_0000 \
+    plane_{,old_}enzo/data0000.hierarchy plane_chombo.hdf5 plane_athena.athdf; do
     run isolines "$file" --field dist --values 0 --threshold 0 -o l.vtp
     value length >lengths
     [ -f all_lengths ] || cp lengths all_lengths
@@ -89,6 +89,8 @@ sed 's/even_1/gone/' even.phtg >gone.phtg
 refused 1 "'gone.htg' does not exist" info gone.phtg
 sed 's/even_1.htg/even.phtg/' even.phtg >list.phtg
 refused 1 "'list.phtg': its piece 'even.phtg' does not end in .htg" info list.phtg
+sed 's/even_[012]/even_3/g' even.phtg >none.phtg
+refused 1 "'none.phtg': it has no trees" info none.phtg
 # Coordinates may go backwards.
 run isosurface backwards.htg --field dist --value 0 --threshold 0
 [ "$(value open_edges)" = 0 ] || fail "backwards: open edges: $(cat out)"
@@ -175,6 +177,7 @@ grid = reader.GetOutputDataObject(0)
 both = grid.GetCellData().GetArray("both")
 for c, name in enumerate(("dist", "plac")):
     both.CopyComponent(c, grid.GetCellData().GetArray(name), 0)
+both.SetComponent(both.GetNumberOfTuples() - 1, 0, 1e200)  # VTK writes the range of norms as inf
 writer.SetDataSetMajorVersion(int(sys.argv[1]))
 getattr(writer, "SetDataModeTo" + sys.argv[2])()
 writer.SetFileName("other.htg")
@@ -219,6 +222,23 @@ file["level_3/boxes"] = np.zeros(0, levels[0]["boxes"].dtype)
 for i, name in enumerate(["of any length", "dist"]): file.attrs[f"component_{i}"] = name'
 run isosurface empty.hdf5 --field "of any length" --value 0 --threshold 0
 [ "$(value area)" = "$(head -1 all_areas)" ] || fail "an empty level and a long name: $(cat out)"
+edited run_hdf5_plt_cnt_0000 mixed 'floats = file["dist"][()].astype("f4")
+del file["dist"]
+file["dist"] = floats'
+run info mixed
+[ "$(value type)" = float64 ] || fail "a field of floats beside one of doubles: $(cat out)"
+edited run_hdf5_plt_cnt_0000 longer 'twice = np.concatenate([file["dist"][()]] * 2)
+del file["dist"]
+file["dist"] = twice'
+refused 1 "'longer': a data set has not one number for each cell of each block" info longer
+cp -r enzo longer_enzo
+edited enzo/data0000.cpu0000 longer_enzo/data0000.cpu0000 'group = file["Grid00000003"]
+twice = np.concatenate([group["dist"][()]] * 2)
+del group["dist"]
+group["dist"] = twice'
+refused 1 "Grid00000003 has not one number of 'dist' for each cell" info longer_enzo/data0000.hierarchy
+edited athena.athdf part.athdf 'file["LogicalLocations"][-1] = 0'
+refused 1 "'part.athdf': level [12] has [0-9] of the 8 blocks that replace the one from .* of level [01]" info part.athdf
 edited athena.athdf thin.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 8], ">i4")'
 refused 1 "'thin.athdf': its blocks are one cell thick along x or y: of slices, those across z are read" info thin.athdf
 edited athena.athdf line.athdf 'file.attrs["MeshBlockSize"] = np.array([8, 1, 1], ">i4")'

@@ -205,7 +205,7 @@ def write_trees(
         low = np.array([x[i] for x, i in zip(corners, at)])
         write(0, low, np.array([x[i + 1] for x, i in zip(corners, at)]) - low)
         ghosts += [0 if owner is None else owner(tree)] * (len(centres) - len(ghosts))
-    columns = {name: f(*np.array(centres).T) for name, f in names.items()}
+    columns = {name: f(*np.reshape(centres, (-1, dim)).T) for name, f in names.items()}
     for name, column in (columns | {"both": np.transpose(list(columns.values()))}).items():
         array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
         array.SetName(name)
@@ -222,27 +222,35 @@ def write_trees(
 
 
 def write_pieces(path: str, *trees: Any) -> None:
-    """The trees of three processes, and a layer of ghosts around those of each: layers of cubes."""
+    """The trees of three processes, and a layer of ghosts around those of each: layers of cubes.
+
+    Before them the piece of a process that has none.
+    """
     corners = trees[0]
     layer = int(np.prod([len(x) - 1 for x in corners[:-1]]))
-    ends = [0, 3, 4, len(corners[-1]) - 1]
+    ends = [0, 3, 4, len(corners[-1]) - 1, 1000]
     folder, name = os.path.split(path)
     for piece, (begin, end) in enumerate(zip(ends, ends[1:])):
 
         def owner(tree: int, begin: int = begin, end: int = end) -> int:
             at = tree // layer
-            return 0 if begin <= at < end else 1 if begin - 1 <= at <= end else 2
+            return 0 if begin <= at < end else 1 if begin - 1 <= at <= end < 1000 else 2
 
         write_trees(os.path.join(folder, f"{name[:-5]}_{piece}.htg"), *trees, owner=owner)
-    pieces = "".join(f'<Piece Source="{name[:-5]}_{i}.htg"/>' for i in range(3))
+    pieces = "".join(f'<Piece Source="{name[:-5]}_{i}.htg"/>' for i in (3, 0, 1, 2))
     with open(path, "w", encoding="utf-8") as file:
         file.write('<?xml version="1.0"?>\n<VTKFile type="PHyperTreeGrid" version="0.1" ')
         file.write('byte_order="LittleEndian" header_type="UInt32">\n<PHyperTreeGrid>')
         file.write(f"{pieces}</PHyperTreeGrid>\n</VTKFile>\n")
 
 
-def write_flash(path: str, dim: int, fields: Fields, time: float = 0, geometry: str = "cartesian") -> None:
-    blocks = blocks_of(dim)
+def write_flash(
+    path: str, dim: int, fields: Fields, time: float = 0, geometry: str = "cartesian", has_leaves_alone: bool = False
+) -> None:
+    """Where leaves are alone, names are not filled up to four letters, either."""
+    all_blocks = blocks_of(dim)
+    blocks = [b for b in all_blocks if not (has_leaves_alone and is_divided(b, all_blocks))]
+    padded_length = 0 if has_leaves_alone else 4
     number = {block: i + 1 for i, block in enumerate(blocks)}  # from 1
     corners = list(itertools.product(range(2), repeat=dim))
     gid = np.full((len(blocks), 2 * dim + 1 + 2**dim), -1, np.int32)
@@ -255,7 +263,7 @@ def write_flash(path: str, dim: int, fields: Fields, time: float = 0, geometry: 
                 key = (block[0], tuple(beside))
                 gid[i, 2 * d + side] = number.get(key, -1) if inside else -20
         if block[0] > 0:
-            gid[i, 2 * dim] = number[parent(block)]
+            gid[i, 2 * dim] = number.get(parent(block), -1)
         if is_divided(block, blocks):
             for c, corner in enumerate(corners):  # x moves fastest
                 child = tuple(2 * a + b for a, b in zip(block[1], corner[::-1]))
@@ -296,14 +304,18 @@ def write_flash(path: str, dim: int, fields: Fields, time: float = 0, geometry: 
         file["refine level"] = np.array([b[0] + 1 for b in blocks], np.int32)
         types = [2 if is_divided(b, blocks) else 1 for b in blocks]
         file["node type"] = np.array(types, np.int32)
-        file["unknown names"] = np.array([[name[:4].ljust(4).encode()] for name in fields], "S4")
-        for name, f in fields.items():
+        names = [name[:4].ljust(padded_length) for name in fields]
+        file["unknown names"] = np.array([[name.encode()] for name in names], "S4")
+        for name, f in zip(names, fields.values()):
             data = np.stack([values(b, f, blocks).T for b in blocks])
-            file[name[:4].ljust(4)] = data.reshape((len(blocks), *sides[::-1]))
+            file[name] = data.reshape((len(blocks), *sides[::-1]))
 
 
-def write_enzo(folder: str, dim: int, fields: Fields, time: float = 0) -> None:
-    """One file of numbers; grids in the order of Enzo, siblings before the children of the last."""
+def write_enzo(folder: str, dim: int, fields: Fields, time: float = 0, is_packed: bool = True) -> None:
+    """Grids in the order of Enzo, siblings before the children of the last.
+
+    Numbers in one file, beside particles, or, as old Enzo wrote them, in a file a grid.
+    """
     os.makedirs(folder, exist_ok=True)
     name = os.path.join(folder, "data0000")
     blocks = blocks_of(dim)
@@ -320,7 +332,8 @@ def write_enzo(folder: str, dim: int, fields: Fields, time: float = 0) -> None:
         text.append(f"GridEndIndex = {joined([N + 2] * dim)}")
         text.append(f"GridLeftEdge = {joined(low)}\nGridRightEdge = {joined(high)}")
         text.append(f"Time = {time}\nSubgridsAreStatic = 0\nNumberOfBaryonFields = {len(fields)}")
-        text.append(f"FieldType = 0\nBaryonFileName = ./data0000.cpu0000\nNumberOfParticles = 0")
+        text.append(f"FieldType = 0\nNumberOfParticles = 0")
+        text.append(f"BaryonFileName = ./data0000.{'cpu0000' if is_packed else f'grid{number:04d}'}")
         text.append(f"Pointer: Grid[{number}]->NextGridThisLevel = {number + 1 if chain[1:] else 0}")
         if chain[1:]:
             write(chain[1:])
@@ -345,10 +358,13 @@ def write_enzo(folder: str, dim: int, fields: Fields, time: float = 0) -> None:
         file.write("LengthUnits = 1\nMassUnits = 1\nTimeUnits = 1\nDensityUnits = 1\n")
         for i, field in enumerate(fields):
             file.write(f"DataLabel[{i}] = {field}\n#DataCGSConversionFactor[{i}] = 1e-24\n")
-    with h5py.File(name + ".cpu0000", "w") as file:
-        for i, block in enumerate(order):
+    for i, block in enumerate(order):
+        ending = "cpu0000" if is_packed else f"grid{i + 1:04d}"
+        with h5py.File(f"{name}.{ending}", "a" if i > 0 and is_packed else "w") as file:
+            group = file.create_group(f"Grid{i + 1:08d}") if is_packed else file
+            group.create_group("ActiveParticles")["mass"] = np.ones(3)
             for field, f in fields.items():
-                file[f"Grid{i + 1:08d}/{field}"] = values(block, f, blocks).T
+                group[field] = values(block, f, blocks).T
 
 
 def write_chombo(path: str, dim: int, fields: Fields, time: float = 0, ghosts: int = 1) -> None:
@@ -434,8 +450,10 @@ def write_all(folder: str, dim: int, time: float = 0, prefix: str = "") -> None:
     write_vthb(path("amr.vthb"), dim, fields)
     write_htg(path("trees.htg"), dim, fields)
     write_flash(path("run_hdf5_plt_cnt_0000"), dim, fields, time)
+    write_flash(path("leaves_hdf5_plt_cnt_0000"), dim, fields, time, "CARTESIAN", True)
     write_flash(path("round_hdf5_plt_cnt_0000"), dim, fields, time, "cylindrical")
     write_enzo(path("enzo"), dim, fields, time)
+    write_enzo(path("old_enzo"), dim, fields, time, False)
     write_chombo(path("chombo.hdf5"), dim, fields, time)
     write_athena(path("athena.athdf"), dim, fields, time)
     even, uneven = [np.linspace(0, 1, 9)] * dim, [np.linspace(0, 1, 9) ** 1.3] * dim

@@ -87,8 +87,45 @@ def read_chombo(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]
     return boxes, place | {"origin": start.tolist(), "name": wanted} | told(time)
 
 
+def levels_in(stored: Any, path: str, coarsest: int = 0) -> list[int]:
+    """The levels of blocks, from 0."""
+    levels = [int(level) - coarsest for level in stored]
+    if not levels:
+        raise Refused(f"{path} has no blocks")
+    for level in levels:
+        if not 0 <= level <= 25:
+            raise Refused(f"{path}: a block has level {level + coarsest}")
+    return levels
+
+
+def replaced(boxes: Boxes) -> Boxes:
+    """The blocks that finer ones replace and the file does not have, with an array nobody reads.
+
+    Raises ValueError where finer ones replace a part of such a block.
+    """
+    size = boxes[0][2].shape
+    places = [(level, tuple(a // n for a, n in zip(low, size))) for level, low, _ in boxes]
+    all_replaced = {
+        (upper, tuple(a >> (level - upper) for a in where))
+        for level, where in places
+        for upper in range(level)
+    }
+    added = sorted(all_replaced.difference(places))
+    here = all_replaced.union(places)
+    for level, where in added:
+        if not all((level + 1, tuple(2 * np.array(where) + c)) in here for c in np.ndindex((2,) * len(size))):
+            raise ValueError(f"its blocks do not fill block {where} of level {level}, which it has not")
+    unread = np.full(size, np.nan, boxes[0][2].dtype)
+    return [(level, [a * n for a, n in zip(where, size)], unread) for level, where in added]
+
+
+def check_blocks(levels: list[int], places: Any, data: np.ndarray, path: str) -> None:
+    if not len(levels) == len(places) == len(data):
+        raise Refused(f"{path} has not one level, one place and numbers for each block")
+
+
 def read_athena(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
-    """Leaves alone: the blocks that they replaced are added, with one array that nobody reads."""
+    """Leaves alone: the blocks that they replaced are added."""
     coordinates = text(file.attrs["Coordinates"])
     if coordinates not in ("cartesian", "minkowski"):
         raise Refused(f"{path} has {coordinates} coordinates, not cartesian ones")
@@ -111,23 +148,20 @@ def read_athena(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]
     wanted = chosen(path, name, names)
     data_set, variable = members[names.index(wanted)]
     data = file[data_set][variable]
-    levels = [int(level) for level in file["Levels"]]
+    levels = levels_in(file["Levels"], path)
     places = [tuple(int(a) for a in each[:dim]) for each in file["LogicalLocations"]]
     step = (extent[:, 1] - extent[:, 0]) / file.attrs["RootGridSize"]
-    begin = extent[0, 0] + places[0][0] * size[0] * step[0] / 2 ** levels[0]
-    if abs(file["x1f"][0, 0] - begin) > 0.1 * step[0] / 2 ** levels[0]:
-        raise Refused(f"{path}: its blocks do not lie at their places: ghost zones are not read")
+    check_blocks(levels, places, data, path)
+    finer = step / 2 ** levels[0]
+    for d in range(dim):
+        begin = extent[d, 0] + places[0][d] * size[d] * finer[d]
+        if abs(file[f"x{d + 1}f"][0, 0] - begin) > 0.1 * finer[d]:
+            raise Refused(f"{path}: its blocks do not lie at their places: ghost zones are not read")
     boxes: Boxes = []
     for block, (level, where) in enumerate(zip(levels, places)):
         low = [a * n for a, n in zip(where, size)]
         boxes.append((level, low, data[block].T.reshape(size[:dim])))
-    replaced = {
-        (upper, tuple(a >> (level - upper) for a in where))
-        for level, where in zip(levels, places)
-        for upper in range(level)
-    }
-    unread = np.full(size[:dim], np.nan, data.dtype)
-    boxes += [(level, [a * n for a, n in zip(where, size)], unread) for level, where in replaced]
+    boxes += replaced(boxes)
     place = {"ratio": [2] * max(levels), "spacing": step[:dim].tolist()}
     told_time = told(file.attrs.get("Time"))
     return boxes, place | {"origin": extent[:dim, 0].tolist(), "name": wanted} | told_time
@@ -150,24 +184,28 @@ def value_in(file: Any, rows: str, wanted: str) -> Any:
 
 
 def read_flash(path: str, name: str, file: Any) -> tuple[Boxes, dict[str, Any]]:
-    """Blocks of one size, those that finer ones replace among them."""
+    """Blocks of one size, with those that finer ones replace or without them."""
     geometry = value_in(file, "string runtime parameters", "geometry")
-    if geometry is not None and text(geometry) != "cartesian":
+    if geometry is not None and text(geometry).lower() != "cartesian":
         raise Refused(f"{path} has {text(geometry)} coordinates, not cartesian ones")
     names = [text(each) for each in np.ravel(file["unknown names"][()])]
     wanted = chosen(path, name, names)
-    data = file[wanted.ljust(4)][()]
+    padded = wanted.ljust(4)
+    data = file[padded if padded in file else wanted][()]
     size = np.array([n for n in data.shape[:0:-1] if n > 1])
     if len(size) not in (2, 3):
         raise Refused(f"{path} has {len(size)} dimensions, not 2 or 3")
-    levels = [int(level) - 1 for level in file["refine level"][()]]
+    levels = levels_in(file["refine level"], path, 1)
     ends = file["bounding box"][()][:, : len(size)].astype(float)
+    check_blocks(levels, ends, data, path)
     start = ends[:, :, 0].min(axis=0)
-    length = (ends[:, :, 1] - ends[:, :, 0])[levels.index(0)]
+    coarsest = levels.index(min(levels))
+    length = (ends[coarsest, :, 1] - ends[coarsest, :, 0]) * 2.0 ** levels[coarsest]
     boxes: Boxes = []
     for block, level in enumerate(levels):
         low = np.array(whole((ends[block, :, 0] - start) / length * 2**level, path)) * size
         boxes.append((level, low.tolist(), data[block].T.reshape(size)))
+    boxes += replaced(boxes)
     place = {"ratio": [2] * max(levels), "spacing": (length / size).tolist()}
     told_time = told(value_in(file, "real scalars", "time"))
     return boxes, place | {"origin": start.tolist(), "name": wanted} | told_time
@@ -199,9 +237,10 @@ def read_enzo(path: str, name: str, open_file: Any) -> tuple[Boxes, dict[str, An
         size = row(grid, "GridEndIndex") - row(grid, "GridStartIndex") + 1
         file = os.path.join(os.path.dirname(path), os.path.basename(grid["BaryonFileName"]))
         with open_file(file, "r") as opened:
-            group = opened[f"Grid{int(grid['Grid']):08d}"]
+            group = opened.get(f"Grid{int(grid['Grid']):08d}", opened)  # old Enzo has no groups
             shape = tuple(int(n) for n in size[::-1])
-            name = chosen(path, name, [each for each in group if group[each].shape == shape])
+            shapes = {each: getattr(group[each], "shape", None) for each in group}
+            name = chosen(path, name, [each for each in group if shapes[each] == shape])
             found.append((low, (row(grid, "GridRightEdge") - low) / size, group[name][()].T))
     steps: list[np.ndarray] = []
     for step in sorted((step for _, step, _ in found), key=lambda step: -float(step[0])):

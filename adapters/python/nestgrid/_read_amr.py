@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from _answer import Refused, answer
 from _hdf5_boxes import Boxes, chosen, read_athena, read_chombo, read_enzo, read_flash, told
-from _read_vtk import check_whole
+from _read_vtk import check_whole, reason
 from _vtk_amr import boxes_of
 
 
@@ -30,8 +30,7 @@ class Complaints:
             vtkOutputWindow.GetInstance().AddObserver(event, self)
 
     def __call__(self, _caller: Any, _event: str, message: str = "") -> None:
-        lines = [line.strip() for line in message.splitlines() if line.strip()]
-        self.first = self.first or (lines[-1] if lines else "VTK gives no reason")
+        self.first = self.first or reason(message)
 
     def check(self, path: str) -> None:
         if self.first:

@@ -52,7 +52,9 @@ class TreeFile:
             reader.SetInputString(head[: cells.start(1)] + head[cells.end(1) :] + appended + data)
         reader.Update()
         self.grid = reader.GetOutputDataObject(0)
-        if GHOSTS in self._arrays:
+        trees = range(self.grid.GetMaxNumberOfTrees())
+        self.has_trees = any(self.grid.GetTree(i) is not None for i in trees)
+        if GHOSTS in self._arrays and self.has_trees:
             self.grid.GetCellData().AddArray(self._read(GHOSTS))
         cell_data = self.grid.GetCellData()
         found = [each for each in names_of(cell_data) if cell_data.GetArray(each) is not None]
@@ -124,10 +126,12 @@ def joined(parts: list[tuple[Trees, np.ndarray]]) -> tuple[Trees, np.ndarray]:
     return Trees(own, none, masked, none, max_level, first.factor, first.coordinates), numbers
 
 
-def read_piece(path: str, name: str, complaints: Complaints) -> tuple[str, Trees, np.ndarray]:
-    """The name of the field, the trees of a file, and the numbers of their leaves."""
+def read_piece(path: str, name: str, complaints: Complaints) -> tuple[str, Trees, np.ndarray] | None:
+    """The name of the field, the trees of a file, if any, and the numbers of their leaves."""
     file = TreeFile(path)
     complaints.check(path)
+    if not file.has_trees:
+        return None
     wanted = chosen(path, name, file.names)
     numbers = file.numbers(wanted)
     complaints.check(path)
@@ -142,8 +146,12 @@ def read(path: str, name: str) -> tuple[dict[str, Any], bytes]:
     parts: list[tuple[Trees, np.ndarray]] = []
     try:
         for piece in pieces_of(path):
-            name, trees, numbers = read_piece(piece, name, complaints)
-            parts.append((trees, numbers))
+            part = read_piece(piece, name, complaints)
+            if part is not None:
+                name, trees, numbers = part
+                parts.append((trees, numbers))
+        if not parts:
+            raise ValueError("it has no trees")
         if len(parts) > 1:
             trees, numbers = joined(parts)
     except ValueError as error:

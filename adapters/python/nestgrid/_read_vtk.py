@@ -33,6 +33,14 @@ TYPES = {
 LENGTHS = {1: "m", 2: "mm", 3: "µm"}  # of NIfTI's xyzt_units
 
 
+def reason(message: str) -> str:
+    """What VTK complains about; nothing for ranges of arrays, whose "inf" it writes and cannot read."""
+    lines = [line.strip() for line in message.splitlines() if line.strip()]
+    if "InformationKey" in message:
+        return ""
+    return lines[-1] if lines else "VTK gives no reason"
+
+
 class Errors:
     """The first error or warning of a reader."""
 
@@ -45,8 +53,7 @@ class Errors:
         reader.AddObserver("WarningEvent", self)
 
     def __call__(self, _caller: Any, _event: str, message: str = "") -> None:
-        lines = [line.strip() for line in message.splitlines() if line.strip()]
-        self.first = self.first or (lines[-1] if lines else "VTK gives no reason")
+        self.first = self.first or reason(message)
 
     def check(self) -> None:
         if self.first:

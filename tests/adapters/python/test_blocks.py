@@ -252,6 +252,7 @@ def amr_files(tmp_path_factory):
 
 
 FORMATS = ["amr.vthb", "run_hdf5_plt_cnt_0000", "enzo/data0000.hierarchy", "chombo.hdf5", "athena.athdf"]
+FORMATS += ["leaves_hdf5_plt_cnt_0000", "old_enzo/data0000.hierarchy"]
 
 
 def test_formats_of_codes_have_one_surface(amr_files):
@@ -477,6 +478,10 @@ def test_pieces_that_do_not_fit(amr_files):
     refused("its piece 'even.phtg' does not end in .htg", "even_1.htg", "even.phtg")
     refused("trees of a piece lie elsewhere than those of the first one", "even_1", "uneven_1")
     refused("overlaps leaf", "even_1", "even_2", nestgrid.InvalidInput)
+    (amr_files / "none.phtg").write_text(re.sub("even_[012]", "even_3", text))
+    for name in ("none.phtg", "even_3.htg"):
+        with pytest.raises(nestgrid.IoError, match=f"{name}: it has no trees"):
+            nestgrid.load(amr_files / name, "dist")
 
 
 @pytest.mark.parametrize("version, mode", [(1, "Ascii"), (1, "Appended"), (2, "Ascii"), (2, "Binary")])
@@ -699,6 +704,19 @@ def test_formats_of_codes_as_others_write_them(amr_files):
     refused("athena.athdf", "has 1 dimension, not 2 or 3", size(8, 1, 1))
     names = lambda file: file.attrs.update(VariableNames=np.array([b"dist"]))  # noqa: E731
     refused("athena.athdf", "a variable has no name", names)
+    deep = lambda file: file["Levels"].__setitem__(0, 2000000000)  # noqa: E731
+    refused("athena.athdf", "a block has level 2000000000", deep)
+    apart = lambda file: file["LogicalLocations"].__setitem__(-1, 0)  # noqa: E731
+    refused("athena.athdf", "do not fill block .* of level [01], which it has not", apart)
+
+    def longer(file):
+        twice = np.concatenate([file["dist"][()]] * 2)
+        del file["dist"]
+        file["dist"] = twice
+
+    refused("run_hdf5_plt_cnt_0000", "has not one level, one place and numbers for each block", longer)
+    no_level = lambda file: file["refine level"].write_direct(np.zeros(80, np.int32))  # noqa: E731
+    refused("run_hdf5_plt_cnt_0000", "a block has level 0", no_level)
 
 
 def test_refusals_of_formats_of_codes(amr_files):

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Hyper tree grids of several processes (.phtg): a list of files, each with some of the trees of
-// one grid, and with copies of trees of other processes, which are ghost cells. Here the trees get
-// together again: each from the file that has it as its own.
+// one grid, or none, and with copies of trees of other processes, which are ghost cells. Here the
+// trees get together again: each from the file that has it as its own.
 #include <optional>
 
 #include <vtkBitArray.h>
@@ -42,6 +42,13 @@ std::vector<fs::path> files_in(const fs::path& path) {
     }
     if (files.empty()) throw InvalidInput("it names no pieces");
     return files;
+}
+
+bool has_trees(vtkHyperTreeGrid& piece) {
+    for (vtkIdType t = 0; t < piece.GetMaxNumberOfTrees(); ++t) {
+        if (piece.GetTree(t) != nullptr) return true;
+    }
+    return false;
 }
 
 bool have_one_lattice(vtkHyperTreeGrid& a, vtkHyperTreeGrid& b) {
@@ -142,6 +149,7 @@ vtkSmartPointer<vtkHyperTreeGrid> read_phtg(const fs::path& path) {
         require_file(file);
         try {
             const vtkSmartPointer<vtkHyperTreeGrid> piece = read_htg(file);
+            if (!has_trees(*piece)) continue;
             if (!joined) joined.emplace(*(first = piece));
             if (!have_one_lattice(*first, *piece)) {
                 throw InvalidInput("its trees lie elsewhere than those of the first piece");
@@ -151,5 +159,6 @@ vtkSmartPointer<vtkHyperTreeGrid> read_phtg(const fs::path& path) {
             throw InvalidInput("the piece '" + file.filename().string() + "': " + error.what());
         }
     }
+    if (!joined) throw InvalidInput("it has no trees");
     return joined->finish();
 }

@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <set>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -72,17 +73,17 @@ std::string text_of_place(const std::array<Number, size>& place) {
 
 }  // namespace detail
 
-/// Adds the boxes that codes without them have divided, as FLASH and Athena++ store leaves alone:
-/// to each level, behind its own boxes, those of the blocks that the finer levels replace. Nothing
-/// is ever read in them: arrays of fields are null there.
+/// Adds the boxes that codes have divided and do not store, as Athena++ stores leaves alone: to
+/// each level, behind its own boxes, those of the blocks that the finer levels replace, without
+/// those that it has. Nothing is ever read in them: arrays of fields are null there.
 ///
 /// \param blocks boxes of one size, each aligned to it, with ratios
-/// \throw InvalidInput naming a box that is not
+/// \throw InvalidInput naming a box that is not, and a block that was replaced in part
 template <int dim>
 void add_parents(Blocks<dim>& blocks) {
     std::array<int, static_cast<std::size_t>(dim)> size{};
     for (std::size_t l = blocks.levels.size(); l-- > 0;) {
-        std::set<std::array<int, static_cast<std::size_t>(dim)>> parents;
+        std::map<std::array<int, static_cast<std::size_t>(dim)>, int> parents;  // their children
         const BlockLevel<dim>& level = blocks.levels[l];
         for (std::size_t b = 0; b < level.boxes.size(); ++b) {
             const BlockBox<dim>& box = level.boxes[b];
@@ -101,10 +102,19 @@ void add_parents(Blocks<dim>& blocks) {
                 }
                 if (l > 0) parent[d] = detail::floored(box.lower[d] / n, level.ratio[d]) * n;
             }
-            parents.insert(parent);
+            ++parents[parent];
         }
         if (l == 0) break;
-        for (const auto& lower : parents) {
+        for (const BlockBox<dim>& box : blocks.levels[l - 1].boxes) parents.erase(box.lower);
+        for (const auto& [lower, children] : parents) {
+            std::int64_t all = 1;
+            for (const int ratio : level.ratio) all *= ratio;
+            if (children != all) {
+                throw InvalidInput(
+                    "level " + std::to_string(l) + " has " + std::to_string(children) + " of the " +
+                    std::to_string(all) + " blocks that replace the one from " +
+                    detail::text_of_place(lower) + " of level " + std::to_string(l - 1));
+            }
             BlockBox<dim> box{lower, lower};
             for (std::size_t d = 0; d < lower.size(); ++d) box.upper[d] += size[d] - 1;
             blocks.levels[l - 1].boxes.push_back(box);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/blocks/hdf5/block_forest.hpp"
 
+#include <algorithm>
+
 namespace {
 
 using nestgrid::InvalidInput;
@@ -36,7 +38,7 @@ nestgrid::Blocks<3> boxes_in(const BlockForest& forest, BlockNumbers& numbers) {
         blocks.levels[static_cast<std::size_t>(level)].boxes.push_back(box);
         numbers[static_cast<std::size_t>(level)].push_back(i);
     }
-    if (!forest.has_parents) nestgrid::add_parents(blocks);
+    nestgrid::add_parents(blocks);
     return blocks_in_space(blocks);
 }
 
@@ -55,6 +57,12 @@ BoxNumbers numbers_of(const Hdf5& data, const std::vector<hsize_t>& variable,
         count.push_back(static_cast<hsize_t>(forest.size[2 - d]));
     }
     from.resize(count.size());
+    const std::vector<hsize_t> shape = data.shape();
+    const auto first = static_cast<std::ptrdiff_t>(variable.size());
+    if (shape.size() != count.size() ||
+        !std::equal(shape.begin() + first, shape.end(), count.begin() + first)) {
+        throw InvalidInput("a data set has not one number for each cell of each block");
+    }
     memory->resize(forest.levels.size() * stride[3]);
     data.read(from, count, is_double, memory->data());
     BoxNumbers result{{}, memory};
@@ -91,7 +99,8 @@ BlockFile forest_file(std::shared_ptr<const Hdf5> opened, BlockForest forest,
     file.dimension = forest.size[2] == 1 ? 2 : 3;
     file.blocks = file.dimension == 2 ? boxes_in<2>(forest, numbers) : boxes_in<3>(forest, numbers);
     for (const ForestField& field : fields) file.fields.push_back({field.name});
-    file.is_double = opened->at(fields.front().data_set).is_double();
+    file.is_double = std::ranges::any_of(
+        fields, [&](const ForestField& field) { return opened->at(field.data_set).is_double(); });
     file.numbers = [opened, forest = std::move(forest), fields = std::move(fields), numbers,
                     blocks = file.blocks, is_double = file.is_double](std::size_t field, int) {
         return numbers_of(opened->at(fields.at(field).data_set), fields[field].variable, forest,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Blocks of one size, as Athena++ and FLASH have them: each with its level, its place in blocks and
-// its part of each data set.
+// its part of each data set. Those that finer ones replace may be among them.
 #pragma once
 
 #include <array>
@@ -13,7 +13,6 @@
 
 struct BlockForest {
     std::array<int, 3> size{};  ///< cells of a block; 1 in the third direction in the plane
-    bool has_parents = false;   ///< whether blocks that finer ones replace are among them
     nestgrid::Point origin{};
     nestgrid::Point spacing{};  ///< of level 0
     std::vector<std::int64_t> levels{};

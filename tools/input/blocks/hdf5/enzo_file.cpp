@@ -52,7 +52,11 @@ std::vector<std::vector<PlacedGrid>> levels_of(std::vector<PlacedGrid> grids,
     return levels;
 }
 
-Hdf5 data_of(const PlacedGrid& grid) { return open_hdf5(grid.file).at(grid.group); }
+/// The numbers of a grid: in a group of its name, or alone in a file, as old Enzo wrote them.
+Hdf5 data_of(const PlacedGrid& grid) {
+    Hdf5 file = open_hdf5(grid.file);
+    return file.has(grid.group) ? file.at(grid.group) : std::move(file);
+}
 
 BlockFile open_enzo(const fs::path& path) {
     std::vector<PlacedGrid> grids = enzo_grids(path);
@@ -66,7 +70,8 @@ BlockFile open_enzo(const fs::path& path) {
         if (first.at(name).shape() == shape) file.fields.push_back({name});
     }
     if (file.fields.empty()) throw InvalidInput("it has no data of cells");
-    file.is_double = first.at(file.fields.front().name).is_double();
+    file.is_double = std::ranges::any_of(
+        file.fields, [&](const auto& field) { return first.at(field.name).is_double(); });
     file.numbers = [levels, fields = file.fields, is_double = file.is_double](std::size_t field,
                                                                               int) {
         const auto memory = std::make_shared<std::vector<std::vector<std::byte>>>();
@@ -82,9 +87,12 @@ BlockFile open_enzo(const fs::path& path) {
                     bytes *= grid.cells[d];
                 }
                 auto& own = memory->emplace_back(bytes);
-                data_of(grid)
-                    .at(fields.at(field).name)
-                    .read(std::vector<hsize_t>(count.size()), count, is_double, own.data());
+                const Hdf5 data = data_of(grid).at(fields.at(field).name);
+                if (data.shape() != count) {
+                    throw InvalidInput(grid.group + " has not one number of '" +
+                                       fields[field].name + "' for each cell");
+                }
+                data.read(std::vector<hsize_t>(count.size()), count, is_double, own.data());
                 array.first = own.data();
             }
         }

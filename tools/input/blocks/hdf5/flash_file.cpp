@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// HDF5 files of FLASH: blocks of one size, with those that finer ones replace, each with its level,
-// from 1, and its bounding box.
+// HDF5 files of FLASH: blocks of one size, with those that finer ones replace or without them, each
+// with its level, from 1, and its bounding box.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 
@@ -57,7 +58,10 @@ std::optional<Value> value_in(const Hdf5& file, const char* data_set, const char
 /// \throw InvalidInput for curved coordinates; files that tell none have cartesian ones
 void require_cartesian(const Hdf5& file) {
     const auto told = value_in<FlashText>(file, "string runtime parameters", "geometry", -1);
-    if (!told || text_of(*told) == "cartesian") return;
+    if (!told) return;
+    std::string geometry = text_of(*told);  // in letters of any case, as FLASH takes it
+    for (char& letter : geometry) letter = static_cast<char>(std::tolower(letter & 0x7f));
+    if (geometry == "cartesian") return;
     throw InvalidInput("it has " + text_of(*told) + " coordinates, not cartesian ones");
 }
 
@@ -80,16 +84,18 @@ std::vector<double> boxes_of(const Hdf5& file, std::size_t blocks) {
 /// Where the blocks of a level lie, from the bounding boxes.
 /// \throw InvalidInput where they have several sizes, or lie beside their places
 void place_blocks(const std::vector<double>& boxes, BlockForest& forest, std::size_t dim) {
-    const auto coarsest = static_cast<std::size_t>(
-        std::find(forest.levels.begin(), forest.levels.end(), 0) - forest.levels.begin());
-    if (coarsest == forest.levels.size()) throw InvalidInput("it has no blocks of level 1");
+    if (forest.levels.empty()) throw InvalidInput("it has no blocks");
+    const auto coarsest =
+        static_cast<std::size_t>(std::ranges::min_element(forest.levels) - forest.levels.begin());
     forest.places.assign(3 * forest.levels.size(), 0);
     for (std::size_t d = 0; d < dim; ++d) {
         double begin = boxes[2 * d];
         for (std::size_t i = 0; i < forest.levels.size(); ++i) {
             begin = std::min(begin, boxes[6 * i + 2 * d]);
         }
-        const double length = boxes[6 * coarsest + 2 * d + 1] - boxes[6 * coarsest + 2 * d];
+        const double length =
+            std::ldexp(boxes[6 * coarsest + 2 * d + 1] - boxes[6 * coarsest + 2 * d],
+                       static_cast<int>(forest.levels[coarsest]));
         forest.origin[d] = begin;
         forest.spacing[d] = length / forest.size[d];
         for (std::size_t i = 0; i < forest.levels.size(); ++i) {
@@ -116,7 +122,7 @@ BlockFile open_flash(const fs::path& path) {
     if (fields.empty()) throw InvalidInput("it has no variables");
     const std::vector<hsize_t> shape = opened->at(fields.front().data_set).shape();
     if (shape.size() != 4) throw InvalidInput("its fields do not have four directions");
-    BlockForest forest{.has_parents = true, .levels = opened->at("refine level").all_integers()};
+    BlockForest forest{.levels = opened->at("refine level").all_integers()};
     for (std::size_t d = 0; d < 3; ++d) {
         forest.size[d] = static_cast<int>(std::min<hsize_t>(shape[3 - d], 1 << 20));
     }
