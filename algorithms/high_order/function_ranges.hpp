@@ -44,7 +44,7 @@ public:
         for (std::size_t f = 0; f < functions_->count(); ++f) {
             Range all = at_[level][f][0];
             for (std::size_t k = 1; k < x.size(); ++k) all = joined(all, at_[level][f][k]);
-            const double first = functions_->at<double>(f, x[0]);
+            const auto first = functions_->at<double>(f, x[0]);
             const Range range = functions_->range(f, x, all, first, beyond);
             // A drawing rounds what is this near to 0.
             const double near = 4 * functions_->tolerance(f);
@@ -66,7 +66,7 @@ private:
     }
     Range at_corner(std::span<const BaseElement> way, std::size_t f, std::size_t corner) const {
         const BaseElement& e = way.back();
-        const double value = functions_->at<double>(f, position(e, corner));
+        const auto value = functions_->at<double>(f, position(e, corner));
         if (way.size() == 1) return {value, value};
         const BaseElement& father = way[way.size() - 2];
         const Rule& rule = *father.member->rule;

@@ -12,6 +12,8 @@
 // Consequence: as for flatness by beta, elements around an edge or face agree.
 #pragma once
 
+#include <utility>
+
 #include <high_order/leaf_records.hpp>
 #include <nestgrid/algorithms/projection.hpp>
 
@@ -42,8 +44,8 @@ private:
 class RegionParts {
 public:
     /// Borrows the corners.
-    RegionParts(const RegionRequest& region, const LeafCorners& corners)
-        : region_{region}, corners_{&corners} {}
+    RegionParts(RegionRequest region, const LeafCorners& corners)
+        : region_{std::move(region)}, corners_{&corners} {}
 
     double tolerance() const { return region_.threshold; }
     /// Whether a part of a leaf is. Those around a part that is are, too.

@@ -101,14 +101,14 @@ void RealNodes::Preroll::seed(std::size_t leaf) {
     double high = facts.greatest;
     double moved = 0;
     double greatest_off = 0;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        const double at_corner = value(corners[k], 0);
-        const auto off = static_cast<double>(node(corners[k]).off);
+    for (const auto& corner : corners) {
+        const double at_corner = value(corner, 0);
+        const auto off = static_cast<double>(node(corner).off);
         lo = std::min(lo, at_corner);
         hi = std::max(hi, at_corner);
         low = std::min(low, at_corner - off);
         high = std::max(high, at_corner + off);
-        moved = std::max(moved, deviation_[corners[k]]);
+        moved = std::max(moved, deviation_[corner]);
         greatest_off = std::max(greatest_off, off);
     }
     const double jump = facts.corner_jump;

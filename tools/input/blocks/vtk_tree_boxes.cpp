@@ -128,7 +128,7 @@ bool trees_fill_boxes(vtkHyperTreeGrid& grid) {
         along, [](vtkDataArray* each) { return each->GetNumberOfTuples() < 2 || is_even(*each); });
 }
 
-TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid) {
+TreeBoxes tree_boxes(const vtkSmartPointer<vtkHyperTreeGrid>& grid) {
     const unsigned* const points = grid->GetDimensions();
     TreeBoxes out{grid, points[2] == 1 ? 2 : 3, {}, {}};
     place_trees(out);

@@ -30,4 +30,4 @@ void require_masks(vtkHyperTreeGrid& grid);
 bool trees_fill_boxes(vtkHyperTreeGrid& grid);
 
 /// \param grid trees_fill_boxes(), which are divided by two, in space or in a plane of constant z
-TreeBoxes tree_boxes(vtkSmartPointer<vtkHyperTreeGrid> grid);
+TreeBoxes tree_boxes(const vtkSmartPointer<vtkHyperTreeGrid>& grid);
