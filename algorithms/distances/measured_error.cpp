@@ -148,6 +148,13 @@ Measured measure_values(const Surface<3>& surface, const Prerolls& prerolls, dou
     return sums.measured();
 }
 
+/// Measures how far two surfaces are from each other, there and back.
+void measure_distances(const Surface<3>& drawn, const Surface<3>& whole, std::size_t points,
+                       const Executor& executor, MeasuredError& error) {
+    error.distance = measure_distance(drawn, whole, points, executor, error);
+    error.back = measure_distance(whole, drawn, points, executor, error);
+}
+
 void require_measurable(const Prerolls& prerolls, double isovalue, std::size_t points) {
     prerolls.field().facts().require_dimension(3);
     if (!std::isfinite(isovalue)) throw InvalidInput("the isovalue is not a finite number");
@@ -162,23 +169,28 @@ MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn,
     require_measurable(prerolls, isovalue, points);
     MeasuredError error;
     error.value = measure_values(drawn, prerolls, isovalue, points, work);
-    error.distance = measure_distance(drawn, whole, points, work.executor, error);
-    error.back = measure_distance(whole, drawn, points, work.executor, error);
+    measure_distances(drawn, whole, points, work.executor, error);
     return error;
 }
 
 MeasuredError measure_error(const Prerolls& prerolls, const Surface<3>& drawn, double isovalue,
                             std::size_t points, const Work& work) {
-    Projection of_whole{.threshold = 0};
-    if (const auto data = prerolls.high_order(work)) {
-        require_measurable(prerolls, isovalue, points);
-        const double found = measure_values(drawn, prerolls, isovalue, points, work).greatest;
-        const double tenth = found > 0 ? found / 10 : default_error(*data);
-        of_whole = {.threshold = std::max(tenth, data->least_tolerance()), .indicator = "error"};
+    const auto whole = [&](const Projection& how) {
+        return isosurface<3>(prerolls, isovalue, how, {.elements = false}, work).surface;
+    };
+    const std::shared_ptr<const HighOrder> data = prerolls.high_order(work);
+    if (data == nullptr) {
+        return measure_error(prerolls, drawn, whole({.threshold = 0}), isovalue, points, work);
     }
-    const Isosurface<3> whole =
-        isosurface<3>(prerolls, isovalue, of_whole, {.elements = false}, work);
-    return measure_error(prerolls, drawn, whole.surface, isovalue, points, work);
+    require_measurable(prerolls, isovalue, points);
+    MeasuredError error;
+    error.value = measure_values(drawn, prerolls, isovalue, points, work);
+    const double found = error.value.greatest;
+    const double tenth = found > 0 ? found / 10 : default_error(*data);
+    const double within = std::max(tenth, data->least_tolerance());
+    measure_distances(drawn, whole({.threshold = within, .indicator = "error"}), points,
+                      work.executor, error);
+    return error;
 }
 
 }  // namespace nestgrid
