@@ -54,13 +54,10 @@ void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& re
     if (!has_values && request.report) write_report(text, surface_report(part.drawn.surface));
     write_mesh(reply, surface);
     if (has_values) write_values(reply, surface);
-    if (!in_light) {
-        // The colours of a slice are those of the legend.
-    } else if (request.normals == NormalType::int8) {
-        write_short_normals(reply, surface.normals);
-    } else if (request.normals == NormalType::float32) {
-        write_normals(reply, surface.normals);
-    }
+    // The colours of a slice are those of the legend.
+    const NormalType normals = in_light ? request.normals : NormalType::none;
+    if (normals == NormalType::int8) write_short_normals(reply, surface.normals);
+    if (normals == NormalType::float32) write_normals(reply, surface.normals);
     text.close('}');
     if (request.outlines) write_outlines(reply, part.drawn.surface);
 }

@@ -26,13 +26,6 @@ using namespace nestgrid::view;
 
 namespace {
 
-/// A field that borrows a grid and values of the test.
-template <class Grid>
-ExploredField borrowed_field(const Grid& grid, const std::vector<double>& values) {
-    const std::shared_ptr<const Grid> shared(std::shared_ptr<const void>(), &grid);
-    return still_field(shared, NodeField<Grid, double>(grid, values));
-}
-
 template <class Family>
 class Explored : public testing::Test {};
 using FamiliesInSpace = testing::Types<BisectionTetrahedra, RedGreenTetrahedra, RedGreenMixed3,

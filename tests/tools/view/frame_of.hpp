@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <explorer.hpp>
+#include <nestgrid/adapters/node_field.hpp>
 
 #include "same_surface.hpp"
 
@@ -68,6 +69,13 @@ private:
     std::string text_;
     std::size_t arrays_;
 };
+
+/// A field that borrows a grid and values of the test.
+template <class Grid>
+nestgrid::view::ExploredField borrowed_field(const Grid& grid, const std::vector<double>& values) {
+    const std::shared_ptr<const Grid> shared(std::shared_ptr<const void>(), &grid);
+    return nestgrid::view::still_field(shared, nestgrid::NodeField<Grid, double>(grid, values));
+}
 
 inline Frame frame_of(nestgrid::view::Explorer& explorer, const std::string& request) {
     return Frame(explorer.frame(request));

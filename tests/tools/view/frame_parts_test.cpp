@@ -37,8 +37,7 @@ TYPED_TEST(FrameParts, AreThoseOfTheLibrary) {
         const NodeField<Grid, double> field(grid, samples.values);
         const HierarchicalIndicator indicator(grid, field);
         const SequentialExecutor executor;
-        const std::shared_ptr<const Grid> borrowed(std::shared_ptr<const void>(), &grid);
-        Explorer explorer(still_field(borrowed, field), executor);
+        Explorer explorer(borrowed_field(grid, samples.values), executor);
         const double range = indicator.greatest() - indicator.least();
         const Projection within = under(Threshold(&indicator, 0.05 * range), indicator);
         const std::string finely = "&threshold=" + text_of(0.05 * range);
@@ -78,11 +77,8 @@ TYPED_TEST(FrameParts, AreThoseOfTheLibrary) {
 /// A number of triangles is that of all parts together.
 TYPED_TEST(FrameParts, KeepWithinTheTrianglesTogether) {
     for_each_field_at_sphere<TypeParam>(2, 5, [](const auto& grid, const NodalSamples& samples) {
-        using Grid = std::decay_t<decltype(grid)>;
-        const NodeField<Grid, double> field(grid, samples.values);
         const SequentialExecutor executor;
-        const std::shared_ptr<const Grid> borrowed(std::shared_ptr<const void>(), &grid);
-        Explorer explorer(still_field(borrowed, field), executor);
+        Explorer explorer(borrowed_field(grid, samples.values), executor);
         const std::string what = "isovalue=0,0.1&boundary=on&sphere=0.5,0.5,0.4,0.37";
         const double all = frame_of(explorer, what).number("triangles");
         const double least = frame_of(explorer, what + "&triangles=1").number("triangles");
@@ -97,11 +93,8 @@ TYPED_TEST(FrameParts, KeepWithinTheTrianglesTogether) {
 /// values.
 TEST(Boundaries, HaveCreasesInLight) {
     for_each_field_at_sphere<UnbalancedOctree>(2, 5, [](const auto& grid, const auto& samples) {
-        using Grid = std::decay_t<decltype(grid)>;
-        const NodeField<Grid, double> field(grid, samples.values);
         const SequentialExecutor executor;
-        const std::shared_ptr<const Grid> borrowed(std::shared_ptr<const void>(), &grid);
-        Explorer explorer(still_field(borrowed, field), executor);
+        Explorer explorer(borrowed_field(grid, samples.values), executor);
         const Frame plain = frame_of(explorer, "boundary=on");
         const Frame lit = frame_of(explorer, "boundary=on&normals=float32");
         const auto normals = lit.array<float>("boundary", "normals");
