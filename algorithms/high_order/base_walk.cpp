@@ -44,7 +44,7 @@ struct BaseWalk::Way {
     std::vector<BaseElement> elements;
     std::deque<Family> families;
     std::map<const Rule*, std::vector<InFather>> children;
-    // That of the last element that was divided.
+    // The rule that divided the last element, and its children, which most next ones share.
     std::pair<const Rule*, const std::vector<InFather>*> last{};
 };
 

@@ -67,8 +67,8 @@ public:
     /// \throw InvalidInput for an element that is divided otherwise than by red_rule(), or
     ///        red_tetrahedron_rule() with any diagonal, but for the order of nodes and children
     void for_each(const Function& function, Positions positions = Positions::no) const;
-    /// The same of `count` leaves from one on, and of the elements above whose first leaf is among
-    /// these.
+    /// Calls it for `count` leaves, the first of which is `from`, and for those elements above them
+    /// whose first leaf is one of these. Positions are not given.
     void for_each(const Function& function, const WayToLeaf& from, std::size_t count) const;
 
     /// As in "element 3/0/1".

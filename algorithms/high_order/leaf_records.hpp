@@ -84,7 +84,7 @@ private:
     std::size_t size_ = 0;  // of all blocks
 };
 
-/// What is known of a part of a leaf.
+/// The record of an edge or face (ShapePart), bounded, and how far one of its leaves is from it.
 struct PartFacts {
     NetFacts record;
     double jump = 0;  ///< how far the leaf is from the record there

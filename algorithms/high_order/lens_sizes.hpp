@@ -27,7 +27,7 @@ public:
     /// A point of a leaf, whose edges are straight. \param leaf in the order of the walk
     /// \param at in units of 2^-level
     Point position(std::size_t leaf, const Place& at, int level) const;
-    /// Those of several points. \param room for them
+    /// Positions of several points of a leaf, which are written into room.
     std::span<const Point> positions(std::size_t leaf, std::span<const Place> points, int level,
                                      std::array<Point, max_corners>& room) const;
     std::size_t memory_bytes() const { return leaves_.capacity() * sizeof(Leaf); }

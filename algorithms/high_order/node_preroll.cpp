@@ -45,7 +45,7 @@ void RealNodes::Preroll::add_leaf(Task* task, std::span<const BaseElement> way) 
         Chunk& chunk = chunks_.emplace_back();
         for (const BaseElement& on_way : way) chunk.first.push_back(on_way.number);
         chunk.begin = leaf;
-        // Those above whose first leaf this is went before.
+        // Elements above this leaf that begin with it were added before it.
         chunk.first_split = splits_.size();
         for (std::size_t i = way.size(); i-- > 1 && way[i].number == 0;) --chunk.first_split;
     }
