@@ -59,6 +59,10 @@ TYPED_TEST(FrameParts, AreThoseOfTheLibrary) {
             expect_part(frame, "boundary", hull.surface);
             expect_values(frame, "boundary", hull.surface.attributes);
             expect_part(frame, "isosurface", surfaces[first].surface);
+            for (const double isovalue : isovalues) {
+                const std::string told = "\"isovalue\":" + text_of(isovalue) + ",";
+                EXPECT_NE(frame.text().find(told), std::string::npos) << told;
+            }
             EXPECT_EQ(frame.number("isovalue", "isosurface"), isovalues[first]);
             const SurfaceReport report = surface_report(surfaces[first].surface);
             EXPECT_EQ(frame.number("area", "isosurface"), report.area);
