@@ -19,8 +19,9 @@ private:
     bool of_interest(const View&, const engine::Split&) override { return true; }
     double draw(const View& view, std::span<double>) override {
         polygon_.load(view);
-        polygon_.draw(nullptr, surface());
-        return polygon_.chord(view.is_leaf());
+        engine::Polygon polygon = polygon_.polygon();
+        polygon_.draw(polygon, surface());
+        return polygon_.chord(polygon, view.is_leaf());
     }
 
     engine::ElementPolygon<double> polygon_;

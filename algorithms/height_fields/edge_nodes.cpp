@@ -64,10 +64,15 @@ void EdgeNodes::finish() {
     }
 }
 
-std::span<const EdgeNode> EdgeNodes::on(const KeyPair& edge) const {
+std::span<const EdgeNode> EdgeNodes::between(const KeyPair& edge,
+                                             const std::array<double, 2>& places) const {
     const Range* const range = range_.find(edge);
     if (range == nullptr) return {};
-    return std::span(nodes_).subspan(range->first, range->count);
+    const auto on = std::span(nodes_).subspan(range->first, range->count);
+    const auto [least, greatest] = std::minmax(places[0], places[1]);
+    const auto first = std::ranges::upper_bound(on, least, {}, &EdgeNode::place) - on.begin();
+    const auto end = std::ranges::lower_bound(on, greatest, {}, &EdgeNode::place) - on.begin();
+    return on.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(end - first));
 }
 
 std::size_t EdgeNodes::memory_bytes() const {

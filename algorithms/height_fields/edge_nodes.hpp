@@ -10,6 +10,7 @@
 // Consequence: any number of elements, on any number of levels and sheets, finds the same nodes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -48,8 +49,9 @@ public:
 
     bool empty() const { return nodes_.empty(); }
     std::size_t size() const { return nodes_.size(); }
-    /// The nodes of an edge, in their order. Requires finish().
-    std::span<const EdgeNode> on(const KeyPair& edge) const;
+    /// The nodes strictly between two places on an edge, in their order. Requires finish().
+    std::span<const EdgeNode> between(const KeyPair& edge,
+                                      const std::array<double, 2>& places) const;
     std::span<const double> values(const EdgeNode& node) const {
         return std::span(values_).subspan(node.values * components_, components_);
     }

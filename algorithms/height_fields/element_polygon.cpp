@@ -19,24 +19,74 @@ std::array<std::size_t, 4> loop_of(std::size_t corners) {
 
 }  // namespace
 
+/// The corners of the loaded element counterclockwise.
 template <class Real>
-auto ElementPolygon<Real>::vertex(NodeKey key, const Point& x, std::span<const double> values)
-    -> Number {
-    return surface_->vertex_between({key, key}, [&] {
+std::array<std::size_t, 4> ElementPolygon<Real>::loop() const {
+    const std::size_t n = element_.view().corner_count();
+    auto loop = loop_of(n);
+    if (element_.view().orientation < 0) {
+        std::reverse(loop.begin() + 1, loop.begin() + std::ptrdiff_t(n));
+    }
+    return loop;
+}
+
+template <class Real>
+Polygon ElementPolygon<Real>::polygon() const {
+    const View& view = element_.view();
+    const std::size_t n = view.corner_count();
+    Polygon polygon;
+    polygon.shape = view.shape;
+    polygon.level = static_cast<std::uint16_t>(view.level);
+    polygon.sides = static_cast<std::uint8_t>(n);
+    if (const unsigned boundary = element_.boundary(); boundary != 0) {
+        const auto at = loop();
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::size_t edge = edge_between(view.shape, at[i], at[(i + 1) % n]);
+            polygon.boundary |= static_cast<std::uint8_t>((boundary >> edge & 1U) << i);
+        }
+    }
+    if (n == 3) return polygon;
+    const auto x = four_corners();
+    const auto [one, other] = dividing_diagonals(x);
+    polygon.centred = one && other && needs_centre();
+    const std::size_t shorter =
+        one != other ? (one ? 0U : 1U) : shorter_diagonal(x, at_corners(0), shape_);
+    polygon.diagonal = static_cast<std::uint8_t>(shorter);
+    return polygon;
+}
+
+template <class Real>
+PolygonSides ElementPolygon<Real>::sides(Polygon& polygon) const {
+    const auto at = loop();
+    PolygonSides sides;
+    for (std::size_t i = 0; i < polygon.sides; ++i) {
+        polygon.key[i] = element_.keys()[at[i]];
+        const std::size_t edge = edge_between(polygon.shape, at[i], at[(i + 1) % polygon.sides]);
+        if (element_.view().closed.edge(edge) == nullptr) continue;
+        polygon.within |= static_cast<std::uint8_t>(1U << i);
+        const ElementSide side = element_.side(edge);
+        sides[i] = {side.around, side.place};
+        if (side.corner[0] != at[i]) std::swap(sides[i].place[0], sides[i].place[1]);
+    }
+    return sides;
+}
+
+template <class Real>
+auto ElementPolygon<Real>::vertex(NodeKey key, const Point& x, std::span<const double> values,
+                                  DrawnSurface<3>& surface) const -> Number {
+    return surface.vertex_between({key, key}, [&] {
         return SurfaceCut{shape_.lifted(x, values[0]), {key, key}, 0, values};
     });
 }
 
-/// Makes vertices of the nodes strictly inside an edge.
-/// \param from the corner at which the chain begins
 template <class Real>
-void ElementPolygon<Real>::take_nodes(const EdgeNodes& nodes, std::size_t from, std::size_t edge,
-                                      std::vector<Number>& chain) {
-    const ElementSide side = element_.side(edge);
-    for (const EdgeNode& node : side.inside(nodes)) {
-        chain.push_back(vertex(node.key, node.x, nodes.values(node)));
+void ElementPolygon<Real>::put_vertices(Polygon& polygon, DrawnSurface<3>& surface) {
+    const auto at = loop();
+    for (std::size_t i = 0; i < polygon.sides; ++i) {
+        polygon.vertex[i] = vertex(element_.keys()[at[i]], element_.positions()[at[i]],
+                                   element_.values(at[i]), surface);
     }
-    if (side.rises() != (side.corner[0] == from)) std::ranges::reverse(chain);
+    if (polygon.centred) polygon.centre = add_centre(surface);
 }
 
 template <class Real>
@@ -50,45 +100,40 @@ void ElementPolygon<Real>::add_boundary(Number from, const std::vector<Number>& 
 }
 
 template <class Real>
-void ElementPolygon<Real>::draw(const EdgeNodes* nodes, DrawnSurface<3>& surface) {
+void ElementPolygon<Real>::draw(const Polygon& polygon, const Handle& element,
+                                const NodesOnSides* nodes, DrawnSurface<3>& surface) {
     surface_ = &surface;
-    const View& view = element_.view();
-    const std::size_t n = view.corner_count();
-    auto loop = loop_of(n);
-    if (view.orientation < 0) std::reverse(loop.begin() + 1, loop.begin() + std::ptrdiff_t(n));
-    surface.builder().add_element(view.element(), view.shape, view.level);
-    const unsigned boundary = element_.boundary();
-    for (std::size_t i = 0; i < n; ++i) {
-        number_[i] = vertex(element_.keys()[loop[i]], element_.positions()[loop[i]],
-                            element_.values(loop[i]));
+    surface.builder().add_element(element, polygon.shape, polygon.level);
+    for (std::size_t i = 0; i < polygon.sides; ++i) {
+        std::vector<Number>& chain = between_[i];
+        chain.clear();
+        if (nodes != nullptr) {
+            for (const EdgeNode& node : nodes->inside(i)) {
+                chain.push_back(vertex(node.key, node.x, nodes->nodes.values(node), surface));
+            }
+            const auto& place = nodes->sides[i].place;
+            if (place[0] > place[1]) std::ranges::reverse(chain);
+        }
+        if ((polygon.boundary >> i & 1U) != 0) {
+            add_boundary(polygon.vertex[i], chain, polygon.vertex[(i + 1) % polygon.sides]);
+        }
     }
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t next = (i + 1) % n;
-        const std::size_t edge = edge_between(view.shape, loop[i], loop[next]);
-        between_[i].clear();
-        if (nodes != nullptr) take_nodes(*nodes, loop[i], edge, between_[i]);
-        if ((boundary >> edge & 1U) != 0) add_boundary(number_[i], between_[i], number_[next]);
-    }
-    add_triangles(n);
+    add_triangles(polygon);
 }
 
 template <class Real>
-void ElementPolygon<Real>::add_triangles(std::size_t sides) {
+void ElementPolygon<Real>::add_triangles(const Polygon& polygon) {
     ContourFilling<ElementPolygon> filling(*this);
-    const auto& v = number_;
+    const auto& v = polygon.vertex;
     const auto& on = between_;
-    centred_ = false;
-    if (sides == 3) return filling.add(v[0], v[1], v[2], on[0], on[1], on[2]);
-    const auto x = four_corners();
-    const auto [one, other] = dividing_diagonals(x);
-    if (one && other && needs_centre()) {
-        centred_ = true;
-        const Number centre = add_centre();
-        for (std::size_t i = 0; i < 4; ++i) filling.add(v[i], v[(i + 1) % 4], centre, on[i]);
+    if (polygon.sides == 3) return filling.add(v[0], v[1], v[2], on[0], on[1], on[2]);
+    if (polygon.centred) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            filling.add(v[i], v[(i + 1) % 4], polygon.centre, on[i]);
+        }
         return;
     }
-    const std::size_t a =
-        one != other ? (one ? 0U : 1U) : shorter_diagonal(x, at_corners(0), shape_);
+    const std::size_t a = polygon.diagonal;
     const std::size_t c = a + 2;
     const std::size_t d = (a + 3) % 4;
     filling.add(v[a], v[a + 1], v[c], on[a], on[a + 1]);
@@ -105,7 +150,7 @@ bool ElementPolygon<Real>::needs_centre() const {
 
 /// Adds a vertex in the middle of a quadrilateral.
 template <class Real>
-auto ElementPolygon<Real>::add_centre() -> Number {
+auto ElementPolygon<Real>::add_centre(DrawnSurface<3>& surface) -> Number {
     const auto mean = [](const auto& at) { return face_mean(at(0U), at(1U), at(2U), at(3U)); };
     const auto& corners = element_.positions();
     Point x;
@@ -114,13 +159,13 @@ auto ElementPolygon<Real>::add_centre() -> Number {
         at_centre_[c] = mean([&](std::size_t k) { return element_.u(k, c); });
     }
     x = shape_.lifted(x, at_centre_[0]);
-    return surface_->add_unnamed(std::span(&x, 1), at_centre_);
+    return surface.add_unnamed(std::span(&x, 1), at_centre_);
 }
 
 template <class Real>
-double ElementPolygon<Real>::chord(bool nested) const {
-    if (element_.view().corner_count() != 4) return 0;
-    return quadrilateral_chord(four_corners(), at_corners(0), nested, centred_);
+double ElementPolygon<Real>::chord(const Polygon& polygon, bool nested) const {
+    if (polygon.sides != 4) return 0;
+    return quadrilateral_chord(four_corners(), at_corners(0), nested, polygon.centred);
 }
 
 template class ElementPolygon<float>;

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The triangles of one two-dimensional element: a polygon whose sides carry the nodes that finer
-// sides recorded on its edges.
+// sides recorded on its edges. Which diagonal divides it does not depend on them, so that it may be
+// drawn before or after they are known.
 //
 // Invariants: each part of a side belongs to one triangle, which runs along it; every other edge
 // belongs to two triangles and joins no two vertices of one side. So no triangle is degenerate.
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include <height_fields/element_sides.hpp>
+#include <height_fields/polygon_asides.hpp>
 #include <height_fields/quadrilateral.hpp>
 #include <surfaces/drawn_surface.hpp>
 
@@ -30,12 +32,27 @@ public:
     void load(const View& view) { element_.load(view); }
     /// Records the nodes that the loaded element has inside closed edges.
     void record(EdgeNodes& nodes) { element_.record(nodes); }
-    /// Draws the loaded element.
-    /// \param nodes that finer sides recorded, or null
-    void draw(const EdgeNodes* nodes, DrawnSurface<3>& surface);
-    /// How far component 0, interpolated from the corners, and the triangles drawn last differ.
+    /// The polygon of the loaded element, without its sides and vertices.
+    Polygon polygon() const;
+    /// The sides of the polygon of the loaded element, which is told its keys and which sides are
+    /// parts of larger edges.
+    PolygonSides sides(Polygon& polygon) const;
+    /// Sets the vertices of the polygon of the loaded element.
+    void put_vertices(Polygon& polygon, DrawnSurface<3>& surface);
+    /// Draws a polygon that has its vertices.
+    /// \param element the handle of its element
+    /// \param nodes on its sides, or null
+    void draw(const Polygon& polygon, const Handle& element, const NodesOnSides* nodes,
+              DrawnSurface<3>& surface);
+    /// Draws the loaded element, on whose sides no nodes lie.
+    void draw(Polygon& polygon, DrawnSurface<3>& surface) {
+        put_vertices(polygon, surface);
+        draw(polygon, element_.view().element(), nullptr, surface);
+    }
+    /// How far component 0, interpolated from the corners of the loaded element, and the triangles
+    /// of its polygon differ.
     /// \param nested whether all leaves below the element have its shape
-    double chord(bool nested) const;
+    double chord(const Polygon& polygon, bool nested) const;
     const std::array<NodeKey, max_corners>& keys() const { return element_.keys(); }
     /// Component 0 at a corner.
     double u(std::size_t corner) const { return element_.u(corner); }
@@ -44,11 +61,11 @@ public:
     void triangle(Number a, Number b, Number c) { surface_->add_simplex({a, b, c}, {}); }
 
 private:
-    Number vertex(NodeKey key, const Point& x, std::span<const double> values);
-    void take_nodes(const EdgeNodes& nodes, std::size_t from, std::size_t edge,
-                    std::vector<Number>& chain);
+    std::array<std::size_t, 4> loop() const;
+    Number vertex(NodeKey key, const Point& x, std::span<const double> values,
+                  DrawnSurface<3>& surface) const;
     void add_boundary(Number from, const std::vector<Number>& between, Number to);
-    void add_triangles(std::size_t sides);
+    void add_triangles(const Polygon& polygon);
     QuadrilateralCorners four_corners() const {
         return std::span(element_.positions()).template first<4>();
     }
@@ -57,15 +74,13 @@ private:
         return {u(0), u(1), u(2), u(3)};
     }
     bool needs_centre() const;
-    Number add_centre();
+    Number add_centre(DrawnSurface<3>& surface);
 
     ElementSides<Real> element_;
     GraphShape shape_;
-    DrawnSurface<3>* surface_ = nullptr;
-    std::array<Number, 4> number_{};                // of the corners, around the polygon
-    std::array<std::vector<Number>, 4> between_{};  // vertices on the sides, in that order
+    DrawnSurface<3>* surface_ = nullptr;            // that is drawn into
+    std::array<std::vector<Number>, 4> between_{};  // vertices on the sides, in their order
     std::vector<double> at_centre_;                 // a value for each component
-    bool centred_ = false;
 };
 
 }  // namespace nestgrid::engine

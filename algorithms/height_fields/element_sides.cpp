@@ -2,18 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <height_fields/element_sides.hpp>
 
-#include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace nestgrid::engine {
-
-std::span<const EdgeNode> ElementSide::inside(const EdgeNodes& nodes) const {
-    const std::span<const EdgeNode> on = nodes.on(around);
-    const auto [least, greatest] = std::minmax(place[0], place[1]);
-    const auto is_before = [](const EdgeNode& node, double end) { return node.place < end; };
-    const auto first = std::ranges::upper_bound(on, least, {}, &EdgeNode::place);
-    return {first, std::lower_bound(first, on.end(), greatest, is_before)};
-}
 
 template <class Real>
 void ElementSides<Real>::load(const View& view) {

@@ -21,8 +21,6 @@ struct ElementSide {
 
     /// Whether places rise from the first corner to the second.
     bool rises() const { return place[0] < place[1]; }
-    /// The recorded nodes strictly inside the edge, in the order of their places.
-    std::span<const EdgeNode> inside(const EdgeNodes& nodes) const;
 };
 
 template <class Real>

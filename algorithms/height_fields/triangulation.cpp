@@ -16,7 +16,8 @@ Triangulation<Real>::Triangulation(const Graph<Real>& graph, const SurfaceBuilde
     : Base(*graph.walk, progress),
       graph_{graph},
       polygon_{*graph.walk, graph.shape},
-      surface_{builder, graph.walk->hierarchy().facts().node_count} {
+      surface_{builder, graph.walk->hierarchy().facts().node_count},
+      asides_{graph.walk->hierarchy().make_elements()} {
     recorded_.begin(graph.walk->components());
     surface_.begin(builder, {}, false);
 }
@@ -26,7 +27,8 @@ Triangulation<Real>::Triangulation(const Graph<Real>& graph)
     : Base(*graph.walk, {}),
       graph_{graph},
       polygon_{*graph.walk, graph.shape},
-      surface_{{part_, true, graph.elements}, graph.walk->hierarchy().facts().node_count} {
+      surface_{{part_, true, graph.elements}, graph.walk->hierarchy().facts().node_count},
+      asides_{graph.walk->hierarchy().make_elements()} {
     recorded_.begin(graph.walk->components());
     part_.surface.elements = graph.walk->hierarchy().make_elements();
     surface_.begin({part_, true, graph.elements}, {}, false);
@@ -40,23 +42,13 @@ void Triangulation<Real>::count_only(std::uint64_t most) {
 
 template <class Real>
 void Triangulation<Real>::run(const Executor& executor) {
-    const auto walk = [&] {
-        together(shared(), "triangles", [&] { Base::walk_elements(executor); });
-    };
     if (shared() != nullptr && !surface_.counts_only()) {
         surface_.keep_names(shared()->ranks().rank());
     }
-    if (graph_.stops_apart) {
-        records_ = true;
-        walk();
-        records_ = false;
-        this->restart();
-        tally_.begin_later();
-        if (shared() != nullptr) recorded_.exchange(*shared());
-        recorded_.finish();
-        if (!recorded_.empty()) nodes_ = &recorded_;
-    }
-    walk();
+    together(shared(), "triangles", [&] { Base::walk_elements(executor); });
+    if (!graph_.stops_apart) return;
+    if (shared() != nullptr) recorded_.exchange(*shared());
+    together(shared(), "triangles", [&] { draw_asides(); });
 }
 
 template <class Real>
@@ -67,8 +59,6 @@ void Triangulation<Real>::walk_alone() {
 template <class Real>
 auto Triangulation<Real>::begin_part(std::unique_ptr<Base>) -> std::unique_ptr<Base> {
     auto part = std::make_unique<Triangulation>(graph_);
-    part->records_ = records_;
-    part->nodes_ = nodes_;
     if (surface_.counts_only()) part->count_only(tally_.limit());
     return part;
 }
@@ -79,7 +69,9 @@ void Triangulation<Real>::add(Base& part) {
     surface_.report().add(drawn.surface_.report());
     recorded_.append(drawn.recorded_);
     tally_.add(drawn.tally_);
-    if (!surface_.counts_only()) surface_.add_part(drawn.part_);
+    std::vector<std::uint32_t> numbers;
+    if (!surface_.counts_only()) numbers = surface_.add_part(drawn.part_);
+    asides_.append(drawn.asides_, numbers);
 }
 
 template <class Real>
@@ -111,64 +103,90 @@ Decision Triangulation<Real>::look(const View& view, const Split& split) {
     if (!stops_by_saturation(graph_.criterion->saturated(), view, split)) {
         decision = question_.ask(*graph_.walk, *graph_.criterion, view, split);
     }
-    if (decision.visit == Visit::stop && !records_) {
+    if (decision.visit == Visit::stop) {
         below_ = graph_.bounds->bound(*split.rule, split.keys);
     }
     return decision;
 }
 
-/// Extracts all leaves; in the first walk only those around which something may be closed, unless
-/// all are counted.
 template <class Real>
-Leaves Triangulation<Real>::leaves(const Rule&, const Real*, NodeMask which, bool closed) {
+Leaves Triangulation<Real>::leaves(const Rule&, const Real*, NodeMask which, bool) {
     count(static_cast<std::uint64_t>(std::popcount(which)));
-    if (records_ && !closed && !tally_.limited()) return {};
     return {which, 0};
-}
-
-/// Records the nodes on closed edges of an element, of which the second walk will draw one triangle
-/// at least.
-template <class Real>
-void Triangulation<Real>::record(const View& view) {
-    if (tally_.limited() && view.member->hidden != Hidden::wholly) tally_.add_later(1);
-    if (!view.closed.any) return;
-    polygon_.load(view);
-    polygon_.record(recorded_);
 }
 
 template <class Real>
 void Triangulation<Real>::extract(const View& view) {
-    if (records_) return record(view);
+    const bool hidden = view.member->hidden == Hidden::wholly;
+    const bool records = graph_.stops_apart && view.closed.any;
+    if (hidden && !records) return;
     polygon_.load(view);
-    const bool finest = view.level == graph_.bounds->finest_level();
-    polygon_.draw(finest ? nullptr : nodes_, surface_);
-    if (surface_.counts_only()) {
-        tally_.add(surface_.builder().target()->simplices.size());
-        return surface_.forget_element();
+    if (records) polygon_.record(recorded_);
+    if (hidden) return;
+    Polygon polygon = polygon_.polygon();
+    if (graph_.stops_apart && view.level != graph_.bounds->finest_level()) {
+        put_aside(view, polygon);
+    } else if (surface_.counts_only()) {
+        tally_.add(polygon.triangles(0));
+    } else {
+        polygon_.draw(polygon, surface_);
     }
+    end_element(view, polygon);
+}
+
+/// Keeps the polygon of the element at hand.
+template <class Real>
+void Triangulation<Real>::put_aside(const View& view, Polygon& polygon) {
+    const PolygonSides sides = polygon_.sides(polygon);
+    if (surface_.counts_only()) {
+        tally_.add_later(polygon.triangles(0));
+    } else {
+        polygon_.put_vertices(polygon, surface_);
+    }
+    asides_.add(polygon, sides);
+    if (surface_.builder().keeps_elements()) asides_.add_handle(view.element());
+}
+
+/// Draws what was put aside, when all nodes on its sides are recorded.
+template <class Real>
+void Triangulation<Real>::draw_asides() {
+    recorded_.finish();
+    tally_.begin_later();
+    asides_.for_each([&](const Polygon& polygon, const PolygonSides& sides, std::size_t number) {
+        const NodesOnSides nodes{recorded_, sides};
+        if (surface_.counts_only()) {
+            std::uint64_t on_sides = 0;
+            for (std::size_t i = 0; i < polygon.sides; ++i) on_sides += nodes.inside(i).size();
+            return tally_.add(polygon.triangles(on_sides));
+        }
+        Handle element;
+        if (surface_.builder().keeps_elements()) element = asides_.handle(number);
+        polygon_.draw(polygon, element, &nodes, surface_);
+    });
+}
+
+/// Counts an element and raises the bounds: adds up what S projected away below it, the offsets of
+/// its interpolated corners, and what its triangles leave out.
+template <class Real>
+void Triangulation<Real>::end_element(const View& view, const Polygon& polygon) {
+    if (surface_.counts_only()) return;
     DrawnReport& report = surface_.report();
     report.extracted += 1;
     const InnerBounds inner = view.inner_bounds();
     report.limited += inner.limited ? 1 : 0;
     report.raise_position_bound(static_cast<double>(inner.position_error));
-    raise_error_bound(view);
-}
-
-/// Adds up what S projected away below an element, the offsets of its interpolated corners, and
-/// what its triangles leave out.
-template <class Real>
-void Triangulation<Real>::raise_error_bound(const View& view) {
-    const float told = view.is_leaf() ? view.inner_bounds().error : 0;
-    if (told > 0) return surface_.report().raise_error_bound(static_cast<double>(told));
+    if (view.is_leaf() && inner.error > 0) {
+        return report.raise_error_bound(static_cast<double>(inner.error));
+    }
     std::array<double, max_corners> u{};
     for (std::size_t i = 0; i < view.corner_count(); ++i) u[i] = polygon_.u(i);
     const Extent corners = Extent::of(std::span(u).first(view.corner_count()));
     const bool quadrilaterals = graph_.walk->hierarchy().facts().only_shape == Shape::quadrilateral;
-    const double chord = polygon_.chord(view.is_leaf() || quadrilaterals);
+    const double chord = polygon_.chord(polygon, view.is_leaf() || quadrilaterals);
     const Bounds& bounds = *graph_.bounds;
     const double off =
         projected_away(view, polygon_.keys(), view.is_leaf() ? 0 : below_, bounds, bounds);
-    surface_.report().raise_error_bound(
+    report.raise_error_bound(
         std::min(off + chord, greatest_difference(corners, corners, off, bounds)));
 }
 
@@ -182,7 +200,7 @@ void Triangulation<Real>::report(Shading& result) const {
     result.position_bound = drawn.position_bound;
     result.edge_nodes = recorded_.size();
     result.edge_nodes_bytes = recorded_.memory_bytes();
-    result.table_bytes = surface_.memory_bytes();
+    result.table_bytes = surface_.memory_bytes() + asides_.memory_bytes();
     result.names = surface_.vertex_names();
     const Bounds& bounds = *graph_.bounds;
     result.range_bound = greatest_difference({bounds.least(), bounds.greatest()}, bounds);

@@ -3,8 +3,9 @@
 //
 // Triangulates the elements at which a criterion stops on a two-dimensional hierarchy.
 //
-// Two walks draw elements that may stop without conforming: the first one records the nodes inside
-// closed edges (edge_nodes.hpp), the second one draws. One walk draws the others.
+// Elements that may stop without conforming record the nodes inside their closed edges
+// (edge_nodes.hpp). Those that may have finer neighbours are put aside as polygons, and drawn when
+// the walk is over and all nodes on their sides are known.
 #pragma once
 
 #include <memory>
@@ -49,7 +50,8 @@ public:
     /// Puts everything but the surface into a result.
     void report(Shading& result) const;
 
-    bool sees_hidden() const override { return records_; }
+    /// Hidden elements are walked to record the nodes on the sides of others.
+    bool sees_hidden() const override { return graph_.stops_apart; }
     Decision inspect(const View& view, const Split& split) override;
     Decision look(const View& view, const Split& split) override;
     Leaves leaves(const Rule& rule, const Real* values, NodeMask which, bool closed) override;
@@ -65,18 +67,18 @@ private:
     void add(Base& part) override;
     void walk_alone() override;
     void count(std::uint64_t elements);
-    void record(const View& view);
-    void raise_error_bound(const View& view);
+    void put_aside(const View& view, Polygon& polygon);
+    void draw_asides();
+    void end_element(const View& view, const Polygon& polygon);
 
     Graph<Real> graph_;
     ElementPolygon<Real> polygon_;
     SurfacePart<3> part_;  // of a task: what its surface is drawn into
     DrawnSurface<3> surface_;
-    EdgeNodes recorded_;  // inside closed edges, in the first of two walks
+    EdgeNodes recorded_;  // inside closed edges
+    PolygonAsides asides_;
     CriterionQuestion question_;
-    const EdgeNodes* nodes_ = nullptr;  // recorded by all tasks
-    bool records_ = false;              // in the first walk
-    double below_ = 0;                  // how far U may leave the corner values in an element
+    double below_ = 0;  // how far U may leave the corner values in an element
 };
 
 }  // namespace nestgrid::engine

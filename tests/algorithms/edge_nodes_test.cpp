@@ -3,6 +3,7 @@
 //
 // Nodes inside edges, from several sheets of elements.
 #include <array>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -28,13 +29,17 @@ TEST(EdgeNodes, AreKeptOnceInTheirOrder) {
     add(task, 0.5, 20);
     nodes.append(task);
     nodes.finish();
-    const auto on = nodes.on({3, 7});
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto on = nodes.between({3, 7}, {-infinity, infinity});
     ASSERT_EQ(on.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(on[i].key, (std::array<NodeKey, 3>{30, 20, 10}[i]));
         EXPECT_EQ(nodes.values(on[i])[0], 10 * on[i].place);
     }
-    EXPECT_TRUE(nodes.on({3, 8}).empty());
+    const auto middle = nodes.between({3, 7}, {0.75, 0.25});
+    ASSERT_EQ(middle.size(), 1U);
+    EXPECT_EQ(middle[0].key, 20U);
+    EXPECT_TRUE(nodes.between({3, 8}, {-infinity, infinity}).empty());
 }
 
 }  // namespace edge_nodes_test

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <nestgrid/algorithms/isosurface.hpp>
+#include <nestgrid/algorithms/shading.hpp>
 
 #include "families.hpp"
 
@@ -57,6 +58,10 @@ TYPED_TEST(OneWalk, AsksEachElementOnce) {
         EXPECT_GE(field.most_asked(), 1);
         for (const double threshold : {0.0, 0.01, 0.1, 0.5}) {
             const Threshold s(&indicator, threshold);
+            if constexpr (TypeParam::Grid::dimension == 2) {
+                shading(grid, field, under(s, indicator));
+                EXPECT_LE(field.most_asked(), 1) << threshold;
+            }
             for (const bool cap : {false, true}) {
                 isosurface(grid, field, 0.01, under(s, indicator), {.cap = cap});
                 EXPECT_LE(field.most_asked(), 1) << threshold;

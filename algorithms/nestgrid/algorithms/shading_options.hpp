@@ -39,7 +39,7 @@ struct Shading : ErrorBounds {
     std::vector<std::array<NodeKey, 2>> names{};
     std::size_t edge_nodes = 0;        ///< nodes of finer sides that were recorded
     std::size_t edge_nodes_bytes = 0;  ///< memory of this record
-    std::size_t table_bytes = 0;       ///< hash table of the vertices
+    std::size_t table_bytes = 0;       ///< hash table of the vertices, and what is put aside
 };
 
 }  // namespace nestgrid
