@@ -12,6 +12,7 @@
 #include <walk/project.hpp>
 
 #include "closedness.hpp"
+#include "copied.hpp"
 #include "slice_laws.hpp"
 
 namespace nestgrid_test {
@@ -62,7 +63,7 @@ std::size_t expect_closed_level(const Grid& grid, const Field& field, double iso
     return triangles;
 }
 
-/// The same at six thresholds, for an isovalue that is met.
+/// The same at six thresholds, for an isovalue that is met; and of a copy.
 template <class Grid, class Field>
 void expect_closed_levels(const Grid& grid, const Field& field, double isovalue, double scale = 1) {
     const HierarchicalIndicator indicator(grid, field);
@@ -73,6 +74,7 @@ void expect_closed_levels(const Grid& grid, const Field& field, double isovalue,
             EXPECT_GT(triangles, 0U);
         }
     }
+    expect_copied<Grid::dimension>(erase(grid, field), isovalue, {0.0, scale * six_thresholds[2]});
 }
 
 /// A linear function, and where it has a value in the unit cube, square or segment.

@@ -91,16 +91,16 @@ struct Problem {
     }
 };
 
-Run ours(const Problem& p, double threshold, int threads) {
+Run ours(const Problem& p, double threshold, int threads, bool copied) {
     Run run;
     const auto start = Clock::now();
     const nestgrid::DealiiGrid<3> grid(p.triangulation);
     const nestgrid::DealiiField field(grid, p.dofs, p.values);
-    if (threads > 1) {
-        time_isosurfaces(grid, field, threshold, start, run, nestgrid::TbbExecutor(threads));
-    } else {
-        time_isosurfaces(grid, field, threshold, start, run);
-    }
+    const auto time = [&](const nestgrid::Executor& executor) {
+        copied ? time_copied(grid, field, threshold, start, run, executor)
+               : time_isosurfaces(grid, field, threshold, start, run, executor);
+    };
+    threads > 1 ? time(nestgrid::TbbExecutor(threads)) : time(nestgrid::SequentialExecutor{});
     return run;
 }
 
@@ -261,10 +261,15 @@ void print_run(const std::string& name, const Run& run) {
     print(name + "_seconds_next", run.next);
     print(name + "_triangles", run.triangles);
     print(name + "_ns_per_visited", 1e9 * run.next / run.visited);
+    print(name + "_copied_ns_per_visited", 1e9 * run.copied_next / run.visited);
 }
 
-constexpr std::array<const char*, 4> contestants{"ours", "ours_threshold_0.005",
-                                                 "data_out_in_memory", "data_out_file"};
+constexpr std::array contestants{"ours",
+                                 "ours_threshold_0.005",
+                                 "copied",
+                                 "copied_threshold_0.005",
+                                 "data_out_in_memory",
+                                 "data_out_file"};
 
 Run run_contestant(const std::string& name, int threads, bool quick) {
 #ifdef NESTGRID_WITH_P4EST
@@ -278,9 +283,11 @@ Run run_contestant(const std::string& name, int threads, bool quick) {
     malloc_trim(0);
     std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts here
     const double before = peak_bytes();
-    Run run = name == contestants[0]   ? ours(p, 0, threads)
-              : name == contestants[1] ? ours(p, 0.005, threads)
-              : name == contestants[2] ? in_memory(p, threads)
+    Run run = name == contestants[0]   ? ours(p, 0, threads, false)
+              : name == contestants[1] ? ours(p, 0.005, threads, false)
+              : name == contestants[2] ? ours(p, 0, threads, true)
+              : name == contestants[3] ? ours(p, 0.005, threads, true)
+              : name == contestants[4] ? in_memory(p, threads)
                                        : through_file(p, threads);
     run.bytes = peak_bytes() - before;
     return run;
@@ -312,16 +319,18 @@ Run alone(const std::string& name, int threads, bool quick) {
 void print_contest(const std::string& with, int threads, bool quick) {
     std::array<Run, contestants.size()> run;
     for (std::size_t i = 0; i < run.size(); ++i) {
-        if (threads > 1 && i == 3) continue;  // writing the file takes one
+        if (threads > 1 && i == 5) continue;  // writing the file takes one
         run[i] = alone(contestants[i], threads, quick);
         print_run(std::string("dealii_") + contestants[i] + with, run[i]);
     }
-    const auto& [here, coarse, memory, file] = run;
+    const auto& [here, coarse, copied, copied_coarse, memory, file] = run;
     print("dealii_memory_ratio" + with, memory.bytes / here.bytes);
     print("dealii_time_ratio_first" + with, memory.first / here.first);
     print("dealii_time_ratio_next" + with, memory.next / here.next);
     print("dealii_time_ratio_first_threshold_0.005" + with, memory.first / coarse.first);
     print("dealii_time_ratio_next_threshold_0.005" + with, memory.next / coarse.next);
+    print("dealii_time_ratio_next_copied" + with, copied.next / here.next);
+    print("dealii_time_ratio_next_copied_threshold_0.005" + with, copied_coarse.next / coarse.next);
     if (threads > 1) return;
     print("dealii_file_time_ratio_first", file.first / here.first);
     print("dealii_ns_per_visited", 1e9 * here.next / here.visited);

@@ -14,10 +14,9 @@ Run run_dune_ug(int levels) {
     const auto solver = simplices<3>(4);
     refine_at_sphere(*solver, levels, 0.17);
     const std::vector<double> values = at_vertices(*solver, ball);
-    Run run;
     const auto start = Clock::now();
     const DuneGrid grid(*solver);
-    time_isosurfaces(grid, DuneVertexField(grid, values), 0, start, run);
+    Run run = time_both(grid, DuneVertexField(grid, values), start);
     run.leaves = solver->size(0);
     return run;
 }

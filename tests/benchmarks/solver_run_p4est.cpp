@@ -24,7 +24,7 @@ Run run_p4est(int levels) {
         const auto start = Clock::now();
         const P4estGrid grid(forest.get());
         const P4estNodalField field(grid, nodes.get(), std::span<const double>(values));
-        time_isosurfaces(grid, field, 0, start, run);
+        run = time_both(grid, field, start);
         run.leaves = static_cast<double>(grid.leaf_count());
     }
     MPI_Finalize();

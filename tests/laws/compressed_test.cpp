@@ -19,6 +19,7 @@
 #include <walk/for_each_element.hpp>
 #include <walk/hanging_nodes.hpp>
 
+#include "copied.hpp"
 #include "families.hpp"
 #include "refusal.hpp"
 #include "same_surface.hpp"
@@ -50,6 +51,7 @@ TYPED_TEST(Compressed, IsTheFieldBitForBit) {
             expect_same(isosurface(grid, decoded, 0.0, under(Blended(&b, epsilon, 1.5), b)).surface,
                         blended.surface);
         }
+        expect_copied<Grid::dimension>(erase(grid, decoded), 0.0);
     });
 }
 

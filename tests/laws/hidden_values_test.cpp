@@ -11,6 +11,7 @@
 #include <nestgrid/algorithms/discontinuous.hpp>
 #include <nestgrid/algorithms/geometry_indicator.hpp>
 #include <nestgrid/algorithms/height_field.hpp>
+#include <nestgrid/algorithms/hierarchy_copy.hpp>
 #include <nestgrid/algorithms/holes.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/norm_indicator.hpp>
@@ -74,6 +75,11 @@ struct Numbers {
     std::vector<double> all;
 
     void add(const Point& x) { all.insert(all.end(), x.begin(), x.end()); }
+    std::vector<double> sorted() const {
+        std::vector<double> result = all;
+        std::ranges::sort(result);
+        return result;
+    }
     template <int dim>
     void add(const Surface<dim>& surface) {
         for (const Point& x : surface.vertices) add(x);
@@ -140,9 +146,12 @@ void expect_nobody_looks(Forest<dim> forest, int steps) {
         const PlaceholderField<dim> field(grid, f, unseen, placeholder);
         const auto violation = check_grid(grid, field);
         EXPECT_FALSE(violation) << violation->sentence;
-        const Numbers numbers = everything<dim>(erase(grid, field));
+        const auto hierarchy = erase(grid, field);
+        const Numbers numbers = everything<dim>(hierarchy);
         if (!first) first = numbers;
         EXPECT_EQ(numbers.all, first->all);
+        // The order of vertices follows keys, which a copy has of its own.
+        EXPECT_EQ(everything<dim>(HierarchyCopy(hierarchy)).sorted(), first->sorted());
     }
     EXPECT_GT(first->all.size(), 1000U);
 }
