@@ -47,7 +47,7 @@ TABLE = {
         "HeightFieldSource NestgridHeightField",
         "the boundary of the domain": "boundary_surface nestgrid_boundary_surface boundary boundary boundary BoundarySource "
         "NestgridBoundary",
-        "data that jump": "DiscontinuousData a c c c a c",
+        "data that jump": "DiscontinuousData nestgrid_leaf_data c c c a c",
         "values at points": "probe nestgrid_probe probe k probe b b",
         "edges of elements": "outlines elements --outlines outlines outlines SetOutlines Outlines",
         "cracks, area, volume": "surface_report nestgrid_measure_surface i report report b b",
