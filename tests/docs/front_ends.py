@@ -47,11 +47,11 @@ TABLE = {
         "HeightFieldSource NestgridHeightField",
         "the boundary of the domain": "boundary_surface nestgrid_boundary_surface boundary boundary boundary BoundarySource "
         "NestgridBoundary",
-        "data that jump": "DiscontinuousData nestgrid_leaf_data c c c a c",
+        "data that jump": "DiscontinuousData nestgrid_leaf_data c c c DiscontinuousSource c",
         "values at points": "probe nestgrid_probe probe k probe b b",
         "edges of elements": "outlines elements --outlines outlines outlines SetOutlines Outlines",
         "cracks, area, volume": "surface_report nestgrid_measure_surface i report report b b",
-        "measured errors": "measure_error nestgrid_measure --measure a measure a a",
+        "measured errors": "measure_error nestgrid_measure --measure a measure SetMeasurePoints a",
     },
     "How finely": {
         "a threshold": "threshold threshold --threshold threshold threshold SetThreshold Threshold",
@@ -79,7 +79,7 @@ TABLE = {
         "vertices at nodes": "at_nodes at_nodes --at-nodes a at_nodes SetAtNodes AtNodes",
         "cuts on finest data": "Cuts finest_cuts --cuts a cuts SetFinestCuts Cuts",
         "the element of a triangle": "elements elements --elements outlines elements SetElements Outlines",
-        "places in elements": "reference reference m m m a m",
+        "places in elements": "reference reference m m m SetReference m",
         "colours that follow the data": "refine_colours colour_tolerance --colour-tolerance a colour_tolerance SetProjection ColourTolerance",
         "threads": "Executor threads --threads e threads SetExecutor e",
         "work that is ended": "Watch progress h h h SetAbortExecute a",
