@@ -16,13 +16,12 @@ import sys
 from pathlib import Path
 
 REASONS = {
-    "a": "not yet",
     "b": "VTK's filters do it with the surface",
     "c": "a file holds no such data",
     "d": "two-dimensional fields are not explored",
     "e": "always all threads",
     "g": "by C++ only: it is a function of the caller's own types",
-    "h": "by Ctrl-C, or by the next request",
+    "h": "by Ctrl-C, by the next request, or as ParaView ends any filter",
     "i": "printed with every surface",
     "j": "what is made for a field is kept with it, so that all calls are a series",
     "k": "the pointer tells the value, the place and the error",
@@ -52,7 +51,7 @@ TABLE = {
         "values at points": "probe nestgrid_probe probe k probe b b",
         "edges of elements": "outlines elements --outlines outlines outlines SetOutlines Outlines",
         "cracks, area, volume": "surface_report nestgrid_measure_surface i report report b b",
-        "measured errors": "measure_error nestgrid_measure --measure measure measure SetMeasurePoints a",
+        "measured errors": "measure_error nestgrid_measure --measure measure measure SetMeasurePoints Measure",
     },
     "How finely": {
         "a threshold": "threshold threshold --threshold threshold threshold SetThreshold Threshold",
@@ -83,7 +82,7 @@ TABLE = {
         "places in elements": "reference reference m m m SetReference m",
         "colours that follow the data": "refine_colours colour_tolerance --colour-tolerance colour_tolerance colour_tolerance SetProjection ColourTolerance",
         "threads": "Executor threads --threads e threads SetExecutor e",
-        "work that is ended": "Watch progress h h h SetAbortExecute a",
+        "work that is ended": "Watch progress h h h SetAbortExecute h",
     },
 }
 # Names that a front end has beside those of the table: data, places, and the like.
