@@ -279,6 +279,7 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
     const FrameCriteria criteria = criteria_for(request, moment, work.work(), steps);
     const FrameDrawing drawing(request, moment, criteria, work, steps);
     Drawn drawn = draw(request, drawing);
+    const double seconds = seconds_since(start);
     drawing.measure(drawn.parts);
     if (request.distance > 0) triangles_of_distance_ = drawn.triangles();
     ErrorBounds bounds;
@@ -291,7 +292,6 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
         if (std::isfinite(part.distance)) distance = part.distance;
         visited += static_cast<double>(part.drawn.counts.visited);
     }
-    const double seconds = seconds_since(start);
     FrameReply reply;
     reply.header.open('{').key("threshold").number(drawn.threshold);
     reply.header.key("triangles").number(static_cast<double>(drawn.triangles()));

@@ -77,7 +77,7 @@ function measures({ parts }, unit) {
   const list = (name, power) => surfaces.map((part) => (part[name] === null
     ? 'open' : withUnit(readable(part[name]), unit && `${unit}${power}`))).join(' · ');
   return [
-    ['area', 'area', list('area', '²'), 'Of the isosurfaces, in the order of their values'],
+    ['area', 'area', list('area', '²'), 'Of the band, and of the isosurfaces in the order of their values'],
     ['volume', 'volume', list('volume', '³'), 'Where the data are greater: of surfaces that are closed'],
   ];
 }

@@ -49,7 +49,7 @@ export const further = [
     why: onSurface,
   },
   {
-    key: 'blend', start: 1, kind: 'number', label: 'Nodes move up to × threshold', hint: 'they jump',
+    key: 'blend', start: 1, kind: 'number', label: 'Nodes move, up to ×', hint: 'they jump',
     valid: (x) => x >= 1, why: polynomial,
   },
   {
