@@ -1,9 +1,9 @@
 ! SPDX-FileCopyrightText: the nestgrid authors
 ! SPDX-License-Identifier: BSD-3-Clause
 !
-! The tables and functions of nestgrid.h, options.h, ranks.h, isosurface.h, slice.h, isolines.h and
-! probe.h for Fortran codes, with the same names and members. Those headers say what each means; what
-! Fortran adds:
+! The tables and functions of nestgrid.h, options.h, ranks.h, isosurface.h, slice.h,
+! discontinuous.h, isolines.h, probe.h and surface_measures.h for Fortran codes, with the same names
+! and members. Those headers say what each means; what Fortran adds:
 !   - functions go into tables by c_funloc(f), where f has bind(c) and the arguments that the header
 !     names; a member that is not set is NULL, or 0, its default;
 !   - `size` is set to c_sizeof(table) before a table, options or a result are handed over;
@@ -277,6 +277,13 @@ module nestgrid
         integer(c_int) :: affine = 0_c_int
     end type nestgrid_level_function
 
+    type, bind(c) :: nestgrid_leaf_data
+        integer(c_size_t) :: size = 0_c_size_t
+        type(c_ptr) :: self = c_null_ptr
+        integer(c_int) :: components = 0_c_int
+        type(c_funptr) :: leaf_values = c_null_funptr
+    end type nestgrid_leaf_data
+
     type, bind(c) :: nestgrid_lines
         integer(c_size_t) :: size = 0_c_size_t
         type(c_ptr) :: owner = c_null_ptr
@@ -489,6 +496,43 @@ module nestgrid
             character(kind=c_char), intent(inout) :: message(*)
             integer(c_size_t), value :: message_size
         end function nestgrid_boundary_surface
+
+        integer(c_int) function nestgrid_discontinuous_height_field(grid, data, scale, options, &
+                out, message, message_size) bind(c, name="nestgrid_discontinuous_height_field")
+            import
+            type(nestgrid_grid), intent(in) :: grid
+            type(nestgrid_leaf_data), intent(in) :: data
+            real(c_double), value :: scale
+            type(nestgrid_options), intent(in), optional :: options
+            type(nestgrid_surface), intent(inout) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_discontinuous_height_field
+
+        integer(c_int) function nestgrid_discontinuous_slice(grid, data, through, normal, options, &
+                out, message, message_size) bind(c, name="nestgrid_discontinuous_slice")
+            import
+            type(nestgrid_grid), intent(in) :: grid
+            type(nestgrid_leaf_data), intent(in) :: data
+            real(c_double), intent(in) :: through(3)
+            real(c_double), intent(in) :: normal(3)
+            type(nestgrid_options), intent(in), optional :: options
+            type(nestgrid_surface), intent(inout) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_discontinuous_slice
+
+        integer(c_int) function nestgrid_discontinuous_slice_along(grid, data, function, options, &
+                out, message, message_size) bind(c, name="nestgrid_discontinuous_slice_along")
+            import
+            type(nestgrid_grid), intent(in) :: grid
+            type(nestgrid_leaf_data), intent(in) :: data
+            type(nestgrid_level_function), intent(in) :: function
+            type(nestgrid_options), intent(in), optional :: options
+            type(nestgrid_surface), intent(inout) :: out
+            character(kind=c_char), intent(inout) :: message(*)
+            integer(c_size_t), value :: message_size
+        end function nestgrid_discontinuous_slice_along
 
         integer(c_int) function nestgrid_isolines(grid, field, values, count, options, &
                 out, message, message_size) bind(c, name="nestgrid_isolines")

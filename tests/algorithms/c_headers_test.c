@@ -3,6 +3,7 @@
  *
  * Compiled as C99: what C codes include is C. A call of before options existed still compiles.
  */
+#include <nestgrid/algorithms/discontinuous.h>
 #include <nestgrid/algorithms/isolines.h>
 #include <nestgrid/algorithms/isosurface.h>
 #include <nestgrid/algorithms/options.h>

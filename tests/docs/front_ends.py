@@ -16,18 +16,18 @@ import sys
 from pathlib import Path
 
 REASONS = {
-    "a": "not yet",
     "b": "VTK's filters do it with the surface",
     "c": "a file holds no such data",
     "d": "two-dimensional fields are not explored",
     "e": "always all threads",
     "g": "by C++ only: it is a function of the caller's own types",
-    "h": "by Ctrl-C, or by the next request",
+    "h": "by Ctrl-C, by the next request, or as ParaView ends any filter",
     "i": "printed with every surface",
     "j": "what is made for a field is kept with it, so that all calls are a series",
     "k": "the pointer tells the value, the place and the error",
     "l": "the field of the caller gives the values between its frames",
     "m": "elements have no names outside the code that made them",
+    "n": "formulas are read by muparser, which is not in the page's WebAssembly",
 }
 FRONT_ENDS = ["C++", "C, Fortran", "program", "page", "Python", "VTK", "ParaView"]
 # Of each feature one cell for each front end: a name, or the letter of a reason.
@@ -37,21 +37,21 @@ TABLE = {
         "NestgridIsosurface",
         "several in one walk": "isosurfaces nestgrid_isosurfaces --value isovalue isosurfaces SetMoreIsovalues MoreIsovalues",
         "a series of them": "IsosurfaceSeries prerolls --value j j j j",
-        "a band between two": "isoband nestgrid_isoband band a isoband IsobandSource NestgridBand",
+        "a band between two": "isoband nestgrid_isoband band band isoband IsobandSource NestgridBand",
         "a slice by a plane": "Plane nestgrid_slice --plane plane plane SliceSource NestgridSlice",
         "by a sphere, a cylinder": "Sphere nestgrid_slice_along --sphere sphere sphere SetCutFunction Shape",
-        "by any function": "LevelFunction nestgrid_slice_along --function a function SetCutFunction Function",
+        "by any function": "LevelFunction nestgrid_slice_along --function n function SetCutFunction Function",
         "isolines in the plane": "isolines nestgrid_isolines isolines d isolines IsolinesSource NestgridIsolines",
-        "isolines on a surface": "surface_isolines nestgrid_surface_isolines --on-surface a isolines b b",
+        "isolines on a surface": "surface_isolines nestgrid_surface_isolines --on-surface lines isolines b b",
         "a height field, a shading": "height_field nestgrid_height_field height d height_field "
         "HeightFieldSource NestgridHeightField",
         "the boundary of the domain": "boundary_surface nestgrid_boundary_surface boundary boundary boundary BoundarySource "
         "NestgridBoundary",
-        "data that jump": "DiscontinuousData a c c c a c",
+        "data that jump": "DiscontinuousData nestgrid_leaf_data c c c DiscontinuousSource c",
         "values at points": "probe nestgrid_probe probe k probe b b",
         "edges of elements": "outlines elements --outlines outlines outlines SetOutlines Outlines",
         "cracks, area, volume": "surface_report nestgrid_measure_surface i report report b b",
-        "measured errors": "measure_error nestgrid_measure --measure a measure a a",
+        "measured errors": "measure_error nestgrid_measure --measure measure measure SetMeasurePoints Measure",
     },
     "How finely": {
         "a threshold": "threshold threshold --threshold threshold threshold SetThreshold Threshold",
@@ -60,34 +60,34 @@ TABLE = {
         "PositionError",
         "a distance, estimated": "slope_deviations NESTGRID_SLOPE --distance distance distance SetIndicator "
         "Distance",
-        "a distance that is kept": "isosurface_within keep_distance --distance-field a distance_field SetDistance "
+        "a distance that is kept": "isosurface_within keep_distance --distance-field distance_field distance_field SetDistance "
         "DistanceField",
         "a number of triangles": "max_triangles max_triangles --max-triangles triangles max_triangles "
         "SetMaxTriangles MaxTriangles",
         "collapsed edges": "collapse collapse --collapse collapse collapse SetCollapse Collapse",
-        "curved slices, collapsed": "slice_distance slice_distance --distance a distance SetProjection SliceDistance",
+        "curved slices, collapsed": "slice_distance slice_distance --distance slice_distance distance SetProjection SliceDistance",
         "an indicator by name": "indicators indicator --indicator indicator indicator SetIndicator Indicator",
-        "nodes that move": "Blended blend --blend a blend SetBlend Blend",
+        "nodes that move": "Blended blend --blend blend blend SetBlend Blend",
         "a lens": "Lens lens --lens lens lens SetLens LensRadius",
-        "a region": "Region region --box a region SetProjection RegionBounds",
+        "a region": "Region region --box box region SetProjection RegionBounds",
         "a criterion of one's own": "Criterion g g g g g g",
         "times between frames": "Frames l --time time Frames SetFrames TimestepValues",
     },
     "How, and what is kept": {
         "normals": "normals normals --no-normals normals normals SetNormals Normals",
         "caps": "cap cap --cap cap cap SetCap Cap",
-        "vertices at nodes": "at_nodes at_nodes --at-nodes a at_nodes SetAtNodes AtNodes",
-        "cuts on finest data": "Cuts finest_cuts --cuts a cuts SetFinestCuts Cuts",
+        "vertices at nodes": "at_nodes at_nodes --at-nodes at_nodes at_nodes SetAtNodes AtNodes",
+        "cuts on finest data": "Cuts finest_cuts --cuts cuts cuts SetFinestCuts Cuts",
         "the element of a triangle": "elements elements --elements outlines elements SetElements Outlines",
-        "places in elements": "reference reference m m m a m",
-        "colours that follow the data": "refine_colours colour_tolerance --colour-tolerance a colour_tolerance SetProjection ColourTolerance",
+        "places in elements": "reference reference m m m SetReference m",
+        "colours that follow the data": "refine_colours colour_tolerance --colour-tolerance colour_tolerance colour_tolerance SetProjection ColourTolerance",
         "threads": "Executor threads --threads e threads SetExecutor e",
-        "work that is ended": "Watch progress h h h SetAbortExecute a",
+        "work that is ended": "Watch progress h h h SetAbortExecute h",
     },
 }
 # Names that a front end has beside those of the table: data, places, and the like.
 OTHERS = {
-    "page": {"axis", "at", "finest", "coarsest", "slope", "motion"},
+    "page": {"axis", "at", "finest", "coarsest", "slope", "motion", "box_threshold"},
     "Python": {"level", "self"},
     "C, Fortran": {"size", "attributes", "attribute_count", "progress_data", "prerolls", "ranks"},
     "VTK": {"SetGrid", "SetOrigin", "SetNormal", "SetIsovalue", "SetScale", "SetValues", "SetLow", "SetHigh",

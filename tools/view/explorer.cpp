@@ -38,9 +38,15 @@ void write_report(JsonText& text, const SurfaceReport& report) {
     text.key("open_edges").number(static_cast<double>(report.open_edges));
 }
 
+void write_measured(JsonText& text, const MeasuredError& measured) {
+    text.key("measured_error").number(measured.value.greatest);
+    text.key("measured_distance").number(measured.distance.greatest);
+    text.key("measured_back").number(measured.back.greatest);
+}
+
 void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& request) {
-    const bool in_light = part.kind != std::string_view("slice");
-    const bool has_values = part.kind != std::string_view("isosurface");
+    const bool in_light = !part.is("slice");
+    const bool has_values = part.has_values();
     const bool has_creases =
         in_light && (request.cap || has_values) && request.normals != NormalType::none;
     const Surface<3> creased = has_creases ? with_creases(part.drawn.surface) : Surface<3>();
@@ -50,7 +56,8 @@ void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& re
     text.key("triangles").number(static_cast<double>(surface.simplices.size()));
     text.key("visited").number(static_cast<double>(part.drawn.counts.visited));
     text.key("error_bound").number(part.drawn.error_bound);
-    if (!has_values) text.key("isovalue").number(part.isovalue);
+    if (part.is("isosurface")) text.key("isovalue").number(part.isovalue);
+    if (part.measured) write_measured(text, *part.measured);
     if (!has_values && request.report) write_report(text, surface_report(part.drawn.surface));
     write_mesh(reply, surface);
     if (has_values) write_values(reply, surface);
@@ -60,6 +67,9 @@ void write_part(FrameReply& reply, const FramePart& part, const FrameRequest& re
     if (normals == NormalType::float32) write_normals(reply, surface.normals);
     text.close('}');
     if (request.outlines) write_outlines(reply, part.drawn.surface);
+    if (has_values && !request.lines.empty()) {
+        write_isolines(reply, part.drawn.surface, request.lines);
+    }
 }
 
 }  // namespace
@@ -149,17 +159,16 @@ FrameCriteria Explorer::criteria_for(const FrameRequest& request, Prerolls& mome
         throw InvalidInput("the elements are straight: leave out position_error");
     }
     if (degree_ > 1) return polynomials_for(request, moment, work, steps);
-    const std::vector<double>& isovalues = request.isovalues;
-    Projection projection{.indicator = request.indicator, .lens = request.lens};
+    const std::vector<double> isovalues = request.level_sets();
+    Projection projection = request.projection(request.indicator);
     if (!keeps_surface(request)) {
         steps.begin("Measuring what counts as detail");
         Criteria detail(moment, projection, isovalues, work);
         return {detail, detail.shared_bounds()};
     }
     steps.begin("Measuring errors");
-    FrameCriteria criteria{
-        Criteria(moment, {.indicator = "deviation", .lens = request.lens}, isovalues, work),
-        moment.choose("deviation", 1, {}, work).bounds};
+    FrameCriteria criteria{Criteria(moment, request.projection("deviation"), isovalues, work),
+                           moment.choose("deviation", request.blend, {}, work).bounds};
     if (isovalues.empty() || (request.moving && request.error > 0)) return criteria;
     if (!request.collapse || request.distance > 0) {
         steps.begin("Measuring distances of the surface");
@@ -175,10 +184,10 @@ FrameCriteria Explorer::criteria_for(const FrameRequest& request, Prerolls& mome
 /// What polynomials are drawn with: within an error, whatever the threshold is called.
 FrameCriteria Explorer::polynomials_for(const FrameRequest& request, Prerolls& moment,
                                         const Work& work, WatchedSteps& steps) {
-    if (request.distance > 0 || request.collapse) {
+    if (request.distance > 0 || request.collapse || request.blend != 1) {
         throw InvalidInput(
             "data of higher degree are drawn within an error or a number of triangles: without a "
-            "distance, and without a collapse");
+            "distance, a collapse and a blend");
     }
     steps.begin("Looking at polynomials");
     FrameCriteria criteria;
@@ -268,8 +277,10 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
     const WatchedWork work(*executor_, steps);
     Prerolls& moment = moment_at(request);
     const FrameCriteria criteria = criteria_for(request, moment, work.work(), steps);
-    const FrameDrawing drawing(request, moment.field(), criteria, work, steps);
-    const Drawn drawn = draw(request, drawing);
+    const FrameDrawing drawing(request, moment, criteria, work, steps);
+    Drawn drawn = draw(request, drawing);
+    const double seconds = seconds_since(start);
+    drawing.measure(drawn.parts);
     if (request.distance > 0) triangles_of_distance_ = drawn.triangles();
     ErrorBounds bounds;
     double visited = 0;
@@ -281,7 +292,6 @@ std::vector<std::byte> Explorer::frame(std::string_view text, const FrameWatch& 
         if (std::isfinite(part.distance)) distance = part.distance;
         visited += static_cast<double>(part.drawn.counts.visited);
     }
-    const double seconds = seconds_since(start);
     FrameReply reply;
     reply.header.open('{').key("threshold").number(drawn.threshold);
     reply.header.key("triangles").number(static_cast<double>(drawn.triangles()));

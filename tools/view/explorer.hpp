@@ -58,11 +58,13 @@ public:
     ///         (isosurface_options.hpp), distance (of a settled isosurface from that of all data,
     ///         an estimate, where an error or a distance is asked for and nothing is collapsed;
     ///         else null), seconds, draws (extractions that the frame took), and a list of parts:
-    ///         kind (isosurface, slice, boundary or outlines), triangles (segments), visited,
-    ///         error_bound, of isosurfaces isovalue and in a report area, volume (null where it is
-    ///         not closed) and open_edges, and arrays: positions, three float32 a vertex; indices,
-    ///         three uint32 a triangle, two a segment; normals, four int8 (times 1/127; the last is
-    ///         0) or three float32 a vertex; values, one float32 a vertex
+    ///         kind (isosurface, band, slice, boundary, outlines or isolines), triangles
+    ///         (segments), visited, error_bound, of isosurfaces isovalue and, where they are
+    ///         measured, measured_error, measured_distance and measured_back, the greatest
+    ///         numbers of a MeasuredError, of them and of bands in a report area, volume (null
+    ///         where it is not closed) and open_edges, and arrays: positions, three float32 a
+    ///         vertex; indices, three uint32 a triangle, two a segment; normals, four int8 (times
+    ///         1/127; the last is 0) or three float32 a vertex; values, one float32 a vertex
     /// \param watch told what is being done; where it returns false, the next frame is drawn as if
     ///        this one had not been asked for
     /// \throw FrameAbandoned where it does

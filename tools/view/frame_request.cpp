@@ -14,11 +14,13 @@ namespace nestgrid::view {
 namespace {
 
 constexpr const char* known_keys =
-    "isovalue, axis, at, plane, sphere, boundary, threshold, triangles, error, position_error, "
-    "distance, collapse, cap, motion, indicator, lens, finest, coarsest, slope, time, normals, "
-    "outlines and report";
+    "isovalue, band, axis, at, plane, sphere, boundary, lines, threshold, triangles, error, "
+    "position_error, distance, distance_field, collapse, slice_distance, cap, motion, indicator, "
+    "blend, lens, finest, coarsest, slope, box, box_threshold, time, normals, at_nodes, cuts, "
+    "colour_tolerance, outlines, report and measure";
 
 constexpr std::size_t most_isovalues = 20;
+constexpr std::size_t most_lines = 50;
 
 std::string names_of(const std::vector<const IndicatorKind*>& kinds) {
     std::string names;
@@ -95,6 +97,75 @@ bool is_on(std::string_view key, std::string_view text) {
     return choice_of<bool, 2>(key, text, {{{"on", true}, {"off", false}}});
 }
 
+void take_further(Entries& entries, FrameRequest& request) {
+    entries.take("band", [&](auto key, auto value) {
+        const std::vector<double> n = numbers_of(key, value, 2);
+        if (!(n[0] < n[1])) refuse(key, "no lower value and a greater one", value);
+        request.band = {n[0], n[1]};
+    });
+    entries.take("lines", [&](auto key, auto value) {
+        request.lines = number_list_of(key, value, most_lines);
+    });
+    entries.take("distance_field",
+                 [&](auto key, auto value) { request.distance_field = is_on(key, value); });
+    entries.take("slice_distance", [&](auto key, auto value) {
+        request.slice_distance = positive_number(key, value);
+    });
+    entries.take("blend", [&](auto key, auto value) {
+        request.blend = number_of(key, value);
+        if (!(request.blend >= 1)) refuse(key, "below 1", value);
+    });
+    const bool box = entries.take("box", [&](auto key, auto value) {
+        const std::vector<double> n = numbers_of(key, value, 6);
+        if (n[0] > n[1] || n[2] > n[3] || n[4] > n[5]) {
+            refuse(key, "a box whose end is before its beginning", value);
+        }
+        request.region.emplace();
+        request.region->distance = Box{{n[0], n[2], n[4]}, {n[1], n[3], n[5]}};
+    });
+    double inside = 0;
+    const bool given = entries.take(
+        "box_threshold", [&](auto key, auto value) { inside = number_at_least_0(key, value); });
+    if (given && !box) throw InvalidInput("box_threshold needs a box");
+    if (box) request.region->threshold = inside;
+    entries.take("at_nodes", [&](auto key, auto value) { request.at_nodes = is_on(key, value); });
+    entries.take("cuts", [&](auto key, auto value) {
+        request.cut_edges =
+            choice_of<Cuts, 2>(key, value, {{{"linear", Cuts::linear}, {"finest", Cuts::finest}}});
+    });
+    entries.take("colour_tolerance", [&](auto key, auto value) {
+        request.colour_tolerance = positive_number(key, value);
+    });
+    entries.take("measure", [&](auto key, auto value) { request.measure = is_on(key, value); });
+}
+
+void check_further(const FrameRequest& request) {
+    const bool surface = !request.isovalues.empty();
+    if (request.measure && !surface) {
+        throw InvalidInput("errors are measured of isosurfaces: give isovalue");
+    }
+    if (request.distance_field && !(request.distance > 0)) {
+        throw InvalidInput("distance_field keeps a distance: give one");
+    }
+    if (request.region && (request.blend != 1 || request.collapse)) {
+        throw InvalidInput("a box is for nodes that jump and edges that stay: leave out " +
+                           std::string(request.collapse ? "collapse" : "blend"));
+    }
+    const bool sliced = request.plane || request.sphere;
+    if (request.slice_distance > 0 && (!request.collapse || !sliced)) {
+        throw InvalidInput(
+            "slice_distance is for slices that are collapsed: give collapse and one");
+    }
+    if (!request.cuts() && (request.colour_tolerance > 0 || !request.lines.empty())) {
+        throw InvalidInput("lines and colour_tolerance are for slices and boundaries: give one");
+    }
+    if (request.colour_tolerance > 0 && (request.triangles > 0 || request.collapse)) {
+        throw InvalidInput(
+            "colours that follow the data take triangles: leave out triangles, collapse or "
+            "colour_tolerance");
+    }
+}
+
 /// What does not go together with an error or a distance.
 void check_detail(const FrameRequest& request, bool names_indicator) {
     const bool by_surface = request.error > 0 || request.distance > 0;
@@ -108,12 +179,17 @@ void check_detail(const FrameRequest& request, bool names_indicator) {
     if (request.cap && !surface) {
         throw InvalidInput("a cap closes an isosurface: give isovalue");
     }
-    if (request.report && !surface) {
+    if (request.report && !request.surfaces()) {
         throw InvalidInput("a report is that of isosurfaces: give isovalue");
     }
+    check_further(request);
     if (!request.collapse) return;
+    if (request.at_nodes) {
+        throw InvalidInput("vertices at nodes stay: leave out at_nodes or collapse");
+    }
     if (request.cap) throw InvalidInput("caps are not collapsed: leave out cap or collapse");
-    if (!(request.error > 0) || !surface) {
+    const bool along_slice = request.slice_distance > 0;
+    if (!(request.error > 0) || (!surface && !along_slice)) {
         throw InvalidInput("collapse needs the error of an isosurface that is to be kept");
     }
     if (request.outlines) {
@@ -161,6 +237,7 @@ FrameRequest parse_request(std::string_view text) {
     entries.take("boundary", [&](auto key, auto value) { request.boundary = is_on(key, value); });
     take_detail(entries, request);
     take_lens(entries, request);
+    take_further(entries, request);
     entries.take("motion", [&](auto key, auto value) {
         request.moving = choice_of<bool, 2>(key, value, {{{"moving", true}, {"settled", false}}});
     });
@@ -184,9 +261,10 @@ FrameRequest parse_request(std::string_view text) {
     entries.take("cap", [&](auto key, auto value) { request.cap = is_on(key, value); });
     entries.take("collapse", [&](auto key, auto value) { request.collapse = is_on(key, value); });
     entries.require_empty(known_keys);
-    if (request.isovalues.empty() && !request.cuts()) {
+    if (!request.surfaces() && !request.cuts()) {
         throw InvalidInput(
-            "nothing is to be drawn: give isovalue, plane, axis and at, sphere, or boundary");
+            "nothing is to be drawn: give isovalue, band, plane, axis and at, sphere, or "
+            "boundary");
     }
     check_detail(request, names_indicator);
     return request;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <nestgrid/algorithms/outlines.hpp>
+#include <nestgrid/algorithms/surface_isolines.hpp>
 #include <nestgrid/detail/geometry.hpp>
 
 namespace nestgrid::view {
@@ -34,6 +35,18 @@ void write_mesh(FrameReply& reply, const Surface<dimension>& surface) {
 template void write_mesh(FrameReply&, const Surface<2>&);
 template void write_mesh(FrameReply&, const Surface<3>&);
 
+namespace {
+
+void write_segments(FrameReply& reply, const char* kind, const Surface<2>& lines) {
+    JsonText& text = reply.header;
+    text.open('{').key("kind").string(kind);
+    text.key("segments").number(static_cast<double>(lines.simplices.size()));
+    write_mesh(reply, lines);
+    text.close('}');
+}
+
+}  // namespace
+
 void write_short_normals(FrameReply& reply, std::span<const Point> normals) {
     const auto to = reply.array<std::int8_t>("normals", "int8", 4 * normals.size());
     for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -58,12 +71,21 @@ void write_values(FrameReply& reply, const Surface<3>& surface, std::size_t comp
 }
 
 void write_outlines(FrameReply& reply, const Surface<3>& surface) {
-    const Surface<2> lines = outlines(surface);
-    JsonText& text = reply.header;
-    text.open('{').key("kind").string("outlines");
-    text.key("segments").number(static_cast<double>(lines.simplices.size()));
-    write_mesh(reply, lines);
-    text.close('}');
+    write_segments(reply, "outlines", outlines(surface));
+}
+
+void write_isolines(FrameReply& reply, const Surface<3>& surface, std::span<const double> values) {
+    if (surface.simplices.empty()) return;
+    const Polylines lines = isolines(surface, 0, values);
+    Surface<2> segments;
+    segments.vertices = lines.vertices;
+    for (std::size_t i = 0; i < lines.count(); ++i) {
+        const auto line = lines.line(i);
+        for (std::size_t k = 1; k < line.size(); ++k) {
+            segments.simplices.push_back({line[k - 1], line[k]});
+        }
+    }
+    write_segments(reply, "isolines", segments);
 }
 
 Surface<3> with_creases(const Surface<3>& surface) {

@@ -30,6 +30,10 @@ void write_values(FrameReply& reply, const Surface<3>& surface, std::size_t comp
 /// \throw InvalidInput as outlines()
 void write_outlines(FrameReply& reply, const Surface<3>& surface);
 
+/// Adds a part of the kind "isolines", with the number of its segments: those of attribute 0.
+/// \throw InvalidInput as isolines()
+void write_isolines(FrameReply& reply, const Surface<3>& surface, std::span<const double> values);
+
 /// The means of the normals of the triangles around each vertex, weighted by area: in a tenth of
 /// the time that gradients take.
 std::vector<Point> normals_from_triangles(const Surface<3>& surface);

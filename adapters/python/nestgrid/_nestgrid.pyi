@@ -21,6 +21,8 @@ class GridError(RuntimeError):
 class IoError(OSError):
     """A file that cannot be read or written."""
 
+def watched(function: Callable[[], Any], look: Callable[[], Any]) -> Any: ...
+
 class Source:
     @property
     def dimension(self) -> int: ...

@@ -75,7 +75,31 @@ void drop_ended_workers() {
     });
 }
 
+/// Called while this thread waits for work, which it is borrowed for; or null.
+thread_local PyObject* looks = nullptr;
+
+/// \return whether a signal handler, or what watches, has raised
+bool has_raised() {
+    if (PyErr_CheckSignals() != 0) return true;
+    if (looks == nullptr) return false;
+    PyObject* const result = PyObject_CallNoArgs(looks);
+    Py_XDECREF(result);
+    return result == nullptr;
+}
+
 }  // namespace
+
+py::object watched(const py::object& function, const py::object& look) {
+    struct Looks {
+        explicit Looks(PyObject* now) { looks = now; }
+        Looks(const Looks&) = delete;
+        Looks& operator=(const Looks&) = delete;
+        ~Looks() { looks = before; }
+        PyObject* before = looks;
+    };
+    const Looks now(look.ptr());
+    return function();
+}
 
 void run_apart(std::function<void()> work, const std::function<void()>& stop) {
     constexpr std::chrono::milliseconds look(20);      // for signals so often
@@ -87,7 +111,7 @@ void run_apart(std::function<void()> work, const std::function<void()>& stop) {
         return worker.wait(most);
     };
     while (!wait(look)) {
-        if (PyErr_CheckSignals() == 0) continue;
+        if (!has_raised()) continue;
         py::error_already_set raised;
         stop();
         if (wait(hearing)) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Work that Ctrl-C ends.
+// Work that Ctrl-C ends, or a function that is called meanwhile.
 //
 // The work runs in a thread of its own without Python's lock, while the thread that called waits
 // and lets Python handle signals. Where a handler raises, the work is told to end. Work that does
@@ -22,7 +22,8 @@
 namespace nestgrid::python {
 
 /// \param stop tells the work to end
-/// \throw what the work throws, or py::error_already_set where a signal handler has raised
+/// \throw what the work throws, or py::error_already_set where a signal handler, or what watches,
+///        has raised
 void run_apart(std::function<void()> work, const std::function<void()>& stop);
 
 /// Calls work(call), to be called with Python's lock.
@@ -42,6 +43,12 @@ auto interruptible(int threads, Work work) {
     run_apart([job] { job->result.emplace(job->work(job->call)); }, [job] { job->call.stop(); });
     return std::move(*job->result);
 }
+
+/// Calls function(), and look() now and then while this thread waits for work: where look() raises,
+/// the work ends as it does where a signal handler has raised.
+/// \return what function() returns
+/// \throw what look() raises, or function()
+pybind11::object watched(const pybind11::object& function, const pybind11::object& look);
 
 /// A Python object that memory belongs to; it may be dropped by any thread.
 std::shared_ptr<const void> keep(pybind11::object object);

@@ -34,6 +34,7 @@ PYBIND11_MODULE(_nestgrid, m) {
     nestgrid::python::bind_extraction(m);
     nestgrid::python::bind_budget(m);
     nestgrid::python::bind_volume_files(m);
+    m.def("watched", &nestgrid::python::watched, py::arg("function"), py::arg("look"));
     py::module_::import("atexit").attr("register")(
         py::cpp_function(&nestgrid::python::wait_for_abandoned_work));
 }

@@ -51,16 +51,19 @@ public:
                       static_cast<double>(leaf_value(detail::element_of<ElementOf<Grid>>(leaf))));
               }) {}
 
+    /// Data on what a grid was erased to: a table of C, say.
+    /// \param grid with a field that is zero
+    /// \param leaf_values called by all threads that draw
+    DiscontinuousData(std::unique_ptr<const Hierarchy<float>> grid, int components,
+                      detail::LeafValues leaf_values)
+        : grid_{std::move(grid)}, components_{components}, leaf_values_{std::move(leaf_values)} {}
+
     /// The grid, with a field that is zero.
     const Hierarchy<float>& grid() const { return *grid_; }
     int components() const { return components_; }
     void leaf_values(const Handle& leaf, std::span<double> out) const { leaf_values_(leaf, out); }
 
 private:
-    DiscontinuousData(std::unique_ptr<const Hierarchy<float>> grid, int components,
-                      detail::LeafValues leaf_values)
-        : grid_{std::move(grid)}, components_{components}, leaf_values_{std::move(leaf_values)} {}
-
     template <class Grid>
     static std::unique_ptr<const Hierarchy<float>> hierarchy_of(const Grid& grid) {
         static constexpr ZeroField<Grid> zero;

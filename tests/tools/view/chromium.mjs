@@ -23,6 +23,7 @@ export class Browser {
       args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
     });
     opened.page = await opened.browser.newPage();
+    opened.page.setDefaultTimeout(120000);  // other work may have all processors
     await opened.page.setViewport({ width: 1280, height: 800 });
     opened.page.on('pageerror', (error) => opened.complaints.push(error.message));
     opened.page.on('console', (message) => {

@@ -118,6 +118,52 @@ try {
   check((await frame()).request.includes('80,120'), 'what is no number takes isovalues away');
   await opened.go('#detail=error');
 
+  // What else a frame may be asked for: each control puts it into the request and the address, and brings
+  // it back; where it means nothing, the reader is told why, and it is not asked for.
+  const put = async (id, value) => {
+    await page.$eval(`#${id}`, (field, to) => {
+      field.value = to;
+      field.dispatchEvent(new Event('change', { bubbles: true }));
+    }, value);
+    await opened.settled();
+  };
+  await opened.go('#detail=threshold&slice=sphere');
+  const shown = await range();
+  check((await whyOf('distance_field')) === 'only for a distance', await whyOf('distance_field'));
+  await put('band', `${0.3 * shown} ${0.4 * shown}`);
+  await put('lines', '4');
+  await put('colour_tolerance', `${0.02 * shown}`);
+  await put('blend', '2');
+  check((await whyOf('box')) === 'not while nodes move', await whyOf('box'));
+  await put('blend', '');
+  await put('box', '0, 30, 0, 30, 0, 30');
+  await put('cuts', 'linear');
+  await click('at_nodes');
+  await click('measure');
+  const { request: more } = await frame();
+  for (const key of ['band=', 'lines=', 'colour_tolerance=', 'box=0,30,0,30,0,30', 'cuts=linear', 'at_nodes=on',
+    'measure=on']) {
+    check(more.includes(key), `${key} is not asked for: ${more}`);
+    check(page.url().includes(key), `${key} is not in the address: ${page.url()}`);
+  }
+  check(!more.includes('blend='), `what was taken back is asked for: ${more}`);
+  const kinds = () => page.evaluate(() => window.nestgrid.shown.frame.parts.map(({ kind }) => kind).join(' '));
+  check((await kinds()) === 'slice isolines band isosurface', `the parts are ${await kinds()}`);
+  check(inTwoDigits.test(await text('number-measured')), `the error is measured as ${await text('number-measured')}`);
+  const again = new URL(page.url()).hash;
+  await opened.go(again);
+  check((await frame()).request === more, 'the address asks for something else');
+  await put('lines', 'many');
+  check(await page.$eval('#lines', (field) => field.getAttribute('aria-invalid')) === 'true', 'many is a number');
+  check((await frame()).request === more, 'what is no number changes the request');
+  await opened.go('#detail=distance&distance_field=on&blend=-1&box=1,2&lines=3');
+  const kept = (await frame()).request;
+  check(kept.includes('distance_field=on'), `the distance is not kept: ${kept}`);
+  check(!/blend|box|lines/.test(kept), `what means nothing is asked for: ${kept}`);
+  await opened.go('#detail=error&collapse=on&slice=sphere&slice_distance=0.5');
+  check((await frame()).request.includes('slice_distance=0.5'), 'slices are not collapsed');
+  await opened.go('#detail=error');
+
   // A distance is about kept; while something moves, the number of triangles is.
   await click('by-distance');
   let last = Infinity;

@@ -8,7 +8,9 @@
 #include <explored_samples.hpp>
 #include <nestgrid/algorithms/boundary_surface.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
+#include <nestgrid/algorithms/isoband.hpp>
 #include <nestgrid/algorithms/isosurfaces.hpp>
+#include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/slice.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
@@ -82,10 +84,38 @@ TEST(Polynomials, AreDrawnWithinErrorsAndNumbersOfTriangles) {
     const double without = frame_of(explorer, "isovalue=0.1&error=0.3").number("triangles");
     const Frame lens = frame_of(explorer, "isovalue=0.1&error=0.3&lens=0.1,0.2,0.3,0.1&slope=1");
     EXPECT_GT(lens.number("triangles"), 2 * without);
-    for (const char* const none : {"distance=0.1", "error=0.1&collapse=on"}) {
+    for (const char* const none : {"distance=0.1", "error=0.1&collapse=on", "error=0.1&blend=2"}) {
         expect_refused([&] { frame_of(explorer, std::string("isovalue=0.1&") + none); },
                        "data of higher degree are drawn within an error or a number of triangles");
     }
+}
+
+/// What else a frame may be asked for is what the library draws of the polynomials.
+TEST(Polynomials, AreDrawnWithWhatElseIsAskedFor) {
+    InPage<DegreeWorld<3>> page(
+        WorldOptions{.levels = 1, .least_degree = 2, .greatest_degree = 4, .seed = 5}, wave);
+    Prerolls prerolls(FieldOnGrid(page.world, page.field));
+    const Projection within{.threshold = 0.1, .indicator = "error"};
+    const auto drawn = [&](const std::string& asked) {
+        return frame_of(page.explorer, "error=0.1&" + asked);
+    };
+    expect_part(drawn("band=0.1,0.4"), "band", isoband<3>(prerolls, 0.1, 0.4, within).surface);
+    Projection finer = within;
+    finer.region = {Box{{0.1, 0.2, 0.3}, {0.6, 0.7, 0.8}}, 0.02};
+    const auto surface = isosurface<3>(prerolls, 0.1, finer);
+    const Frame boxed =
+        drawn("isovalue=0.1&box=0.1,0.6,0.2,0.7,0.3,0.8&box_threshold=0.02&measure=on");
+    expect_part(boxed, "isosurface", surface.surface);
+    EXPECT_EQ(boxed.number("measured_error", "isosurface"),
+              measure_error(prerolls, surface.surface, 0.1, 50000).value.greatest);
+    Projection coloured = within;
+    coloured.colour_tolerance = 0.02;
+    const auto cut = slice(prerolls, Sphere({0.1, 0.2, 0.3}, 0.4), coloured);
+    const Frame sphere = drawn("sphere=0.1,0.2,0.3,0.4&colour_tolerance=0.02&lines=0.5");
+    expect_part(sphere, "slice", cut.surface);
+    const auto plain = slice(prerolls, Sphere({0.1, 0.2, 0.3}, 0.4), within);
+    EXPECT_GT(cut.surface.simplices.size(), plain.surface.simplices.size());
+    EXPECT_TRUE(sphere.has("isolines"));
 }
 
 /// A frame reads the leaves that its parts meet alone, and has the parts of all leaves.

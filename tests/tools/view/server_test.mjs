@@ -92,7 +92,7 @@ async function refused(what, expected, sentence, answer) {
   const { status, body } = await answer;
   const text = body.toString();
   check(status === expected, `${what}: status ${status}`);
-  check(text.includes(sentence) && text.trim().split('\n').length === 1 && text.length < 300,
+  check(text.includes(sentence) && text.trim().split('\n').length === 1 && text.length < 400,
     `${what}: '${text}'`);
   await alive(what);
 }

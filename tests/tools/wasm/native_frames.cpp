@@ -90,6 +90,15 @@ std::vector<std::string> requests(double scale) {
     list.push_back("isovalue=" + at(0.6) + "&plane=0.4,0.5,0.4,1,2,3&triangles=2000");
     list.push_back("isovalue=" + at(0.6) + "&threshold=0&lens=0.5,0.5,0.4,0.1&slope=1");
     list.push_back("isovalue=" + at(1000) + "&threshold=0");
+    const std::string sphere = "&sphere=0.5,0.5,0.4,0.3";
+    list.push_back("band=" + at(0.5) + "," + at(0.6) + "&threshold=" + at(0.01) + "&report=on");
+    list.push_back("isovalue=" + at(0.6) + "&threshold=" + at(0.02) + "&blend=2&at_nodes=on");
+    list.push_back("isovalue=" + at(0.6) + "&threshold=" + at(0.05) +
+                   "&box=0.2,0.5,0.2,0.6,0,1&box_threshold=" + at(0.001) + "&cuts=linear");
+    list.push_back("isovalue=" + at(0.6) + "&distance=0.02&distance_field=on&measure=on");
+    list.push_back("threshold=" + at(0.02) + sphere + "&lines=" + at(0.5) + "," + at(0.7) +
+                   "&colour_tolerance=" + at(0.01));
+    list.push_back("error=" + at(0.03) + sphere + "&collapse=on&slice_distance=0.02");
     return list;
 }
 

@@ -56,6 +56,12 @@ export function colourOf(name, scheme = '') {
   return color;
 }
 
+/** The numbers in a text with commas or spaces between them, or null. */
+export function numbersIn(text) {
+  const numbers = text.split(/[\s,]+/).filter((each) => each !== '').map(Number);
+  return numbers.every(Number.isFinite) ? numbers : null;
+}
+
 /** Four digits, for readers; 0 for what is rounding beside the range of the data. */
 export function readable(x, range = 0) {
   if (x === null || !Number.isFinite(x)) return 'not known';

@@ -4,7 +4,8 @@
 // Sliders and selections. They show a state and say which part of it the reader changes; while a
 // slider is dragged the change is 'moving', when it is let go 'settled'.
 import { percent, readable, readableCount, withUnit } from './colours.js';
-import { collapses, diagonalOf, heldAt, isEmpty, listIn } from './state.js';
+import { FurtherControls } from './further.js';
+import { collapses, diagonalOf, heldAt, isEmpty, listIn, seenOf } from './state.js';
 import { setControl, setWhy } from './status.js';
 
 const byId = (id) => document.getElementById(id);
@@ -35,12 +36,14 @@ export class Controls {
   #state;
   #info;
   #playing = null;
+  #further;
   /** The slider that the reader moves at the moment. */
   #held = null;
 
   /** change(changes, motion) */
   constructor(change) {
     this.#change = change;
+    this.#further = new FurtherControls(byId('further-controls'), change);
     this.#slider('isovalue', (t) => ({ isovalue: this.#valueScale.value(t) }));
     this.#slider('triangles', (t) => ({ triangles: rounded(trianglesScale.value(t)) }));
     this.#slider('threshold', (t) => ({ threshold: t === 0 ? 0 : this.#thresholdScale.value(t) }));
@@ -81,6 +84,7 @@ export class Controls {
     this.#stopPlaying();
     byId('isovalue-number').setAttribute('aria-invalid', 'false');
     this.#setMoreInvalid(false);
+    this.#further.reset();
   }
 
   #setMoreInvalid(invalid) {
@@ -129,6 +133,7 @@ export class Controls {
     this.#place('lens-radius', this.#radiusScale.position(state.radius));
     this.#place('time', linear(info.times[0], info.times.at(-1)).position(state.time));
     this.#showTexts(state, info);
+    this.#further.show(seenOf(state, info));
     this.#showWhyNot(state, held);
   }
 

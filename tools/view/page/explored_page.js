@@ -5,6 +5,7 @@
 import { Controls } from './controls.js';
 import { percent, readable, readableCount, withUnit } from './colours.js';
 import { FrameLoop } from './frame.js';
+import { furtherStart } from './further.js';
 import { drawHistogram } from './legend.js';
 import { Picture } from './picture.js';
 import { addressOf, chosenOf, defaultState, heldAt, planeOf, requestOf, stateFromAddress } from './state.js';
@@ -55,6 +56,20 @@ function nearness({ error_bound: bound, bound_says_nothing: nothing, distance },
   return parts.join(' · ');
 }
 
+/** How far isosurfaces were found to be off, as rows of numbers. */
+function measuredErrors({ parts }, range, unit) {
+  const surfaces = parts.filter((part) => part.measured_error !== undefined);
+  if (surfaces.length === 0) return [];
+  const list = (text) => surfaces.map(text).join(' · ');
+  const there = (part) => Math.max(part.measured_distance ?? Infinity, part.measured_back ?? Infinity);
+  return [
+    ['measured', 'error measured', list((part) => percent(part.measured_error, range)),
+      'The greatest that was met on the isosurfaces, in percent of the range of the data'],
+    ['off', 'distance measured', list((part) => withUnit(readable(there(part)), unit)),
+      'The greatest that was met between the isosurfaces and those of all data, there and back'],
+  ];
+}
+
 /** Area and volume of isosurfaces as rows of numbers, where they have been measured. */
 function measures({ parts }, unit) {
   const surfaces = parts.filter(({ area }) => area !== undefined);
@@ -62,7 +77,7 @@ function measures({ parts }, unit) {
   const list = (name, power) => surfaces.map((part) => (part[name] === null
     ? 'open' : withUnit(readable(part[name]), unit && `${unit}${power}`))).join(' · ');
   return [
-    ['area', 'area', list('area', '²'), 'Of the isosurfaces, in the order of their values'],
+    ['area', 'area', list('area', '²'), 'Of the band, and of the isosurfaces in the order of their values'],
     ['volume', 'volume', list('volume', '³'), 'Where the data are greater: of surfaces that are closed'],
   ];
 }
@@ -150,7 +165,7 @@ export class ExploredPage {
   #stateBehind(kept, changed) {
     if (changed === 'frame') return kept;
     const { isovalue, more, threshold, error, detail } = this.#start;
-    return { ...kept, isovalue, more, threshold, error, detail };
+    return { ...kept, ...furtherStart(), isovalue, more, threshold, error, detail };
   }
 
   /** Draws what a lost engine has not drawn. */
@@ -268,6 +283,7 @@ export class ExploredPage {
         'Between elements: the error may be greater by this than what was asked for']] : []),
       ...(this.#info.curved ? [['positions', 'points off by', withUnit(readable(frame.position_bound), lengthUnit),
         'Points of the surface are no farther from their places in the curved elements']] : []),
+      ...measuredErrors(frame, greatest - least, lengthUnit),
       ...measures(frame, lengthUnit),
       ['threshold', name, readable(asked), meaning],
       ['visited', 'visited', `${readableCount(frame.visited)} elements`,

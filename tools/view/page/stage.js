@@ -183,9 +183,9 @@ export class Stage {
   /** colours: their ends; whether there are several isosurfaces, which have those of their values; opacity,
       1 for what hides what is behind it */
   #drawn(part, geometry, { least, greatest, several, opacity }) {
-    if (part.kind === 'outlines') {
+    if (part.kind === 'outlines' || part.kind === 'isolines') {
       return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({
-        color: colourOf('outline', this.#scheme), transparent: true, opacity: 0.55,
+        color: colourOf('outline', this.#scheme), transparent: true, opacity: part.kind === 'isolines' ? 1 : 0.55,
         userData: { colour: 'outline' } }));
     }
     const look = {

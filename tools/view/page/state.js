@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What the reader has chosen: as an object, in the address of the page, and as a request.
+import { numbersIn } from './colours.js';
+import { furtherEntries, furtherIn, furtherStart, isFurther } from './further.js';
 
 export function diagonalOf(box) {
   return Math.hypot(...box[1].map((x, d) => x - box[0][d]));
@@ -38,6 +40,7 @@ export function defaultState(info) {
     lens: 'off',
     radius: 0.08 * diagonalOf(info.box),
     centre: null,
+    ...furtherStart(),
     time: info.times[0],
     projection: 'perspective',
     camera: null,
@@ -78,13 +81,7 @@ const choices = {
 /** Lists of numbers: how many, at least and at most. */
 const lists = { more: [0, 19], normal: [3, 3], centre: [3, 3], camera: [9, 9] };
 
-/** The numbers in a text with commas or spaces between them, or null. */
-export function numbersIn(text) {
-  const numbers = text.split(/[\s,]+/).filter((each) => each !== '').map(Number);
-  return numbers.every(Number.isFinite) ? numbers : null;
-}
-
-/** The same for a part of the state; null also where they are too few or too many. */
+/** The numbers in a text for a part of the state; null also where they are too few or too many. */
 export function listIn(key, text) {
   const numbers = numbersIn(text);
   const [least, most] = lists[key];
@@ -99,6 +96,8 @@ export function stateFromAddress(hash, start, indicators = []) {
     if (!(key in state)) continue;
     if (key === 'indicator') {
       if (indicators.some(([name]) => name === text)) state[key] = text;
+    } else if (isFurther(key)) {
+      state[key] = furtherIn(key, text) ?? state[key];
     } else if (choices[key]) {
       if (choices[key].includes(text)) state[key] = text;
     } else if (typeof state[key] === 'boolean') {
@@ -148,8 +147,8 @@ export function planeOf({ slice, at, normal }, { box: [low, high] }) {
 }
 
 /** Whether nothing is to be drawn. */
-export function isEmpty({ surface, slice, boundary }) {
-  return !surface && slice === 'none' && !boundary;
+export function isEmpty({ surface, slice, boundary, band }) {
+  return !surface && slice === 'none' && !boundary && band.length === 0;
 }
 
 /** What detail is held at: a distance is that of an isosurface. */
@@ -165,6 +164,11 @@ export function collapses(state) {
 /** Whether the isosurface is closed at the boundary: one that is collapsed stays open. */
 export function caps(state) {
   return state.cap && state.surface && !collapses(state);
+}
+
+/** The state with what follows from it, for further.js. */
+export function seenOf(state, { degree }) {
+  return { ...state, held: heldAt(state), takesAway: collapses(state), degree };
 }
 
 /** Errors and distances have indicators of their own. */
@@ -198,6 +202,7 @@ export function requestOf(state, info, motion) {
   if (caps(state)) entries.push('cap=on');
   if (info.curved) entries.push(`position_error=${state.positions}`);
   if (state.outlines && !collapses(state)) entries.push('outlines=on');
-  if (state.surface && motion === 'settled') entries.push('report=on');
+  if ((state.surface || state.band.length > 0) && motion === 'settled') entries.push('report=on');
+  entries.push(...furtherEntries(seenOf(state, info), info, motion));
   return entries.join('&');
 }

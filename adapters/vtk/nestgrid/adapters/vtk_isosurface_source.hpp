@@ -4,8 +4,11 @@
 // Isosurfaces of a live grid at the head of a VTK pipeline: each update extracts what has changed.
 #pragma once
 
+#include <vtkFieldData.h>
+
 #include <nestgrid/adapters/vtk_grid_source.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
+#include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/outlines.hpp>
 
 namespace nestgrid {
@@ -32,6 +35,17 @@ public:
     /// Whether cells tell the number of their element ("element") and its level ("level").
     void SetElements(bool on) { set(options_.elements, on); }
     bool GetElements() const { return options_.elements; }
+    /// Whether cells tell where in their element each of their corners lies ("reference").
+    void SetReference(bool on) { set(options_.reference, on); }
+    bool GetReference() const { return options_.reference; }
+    /// Measures at about so many points how far each surface is from the data and from that of all
+    /// data, of a grid of dimension 3; 0: not at all. The output tells it as field data: "error",
+    /// "distance" and "distance back", for each isovalue the greatest, the mean and the root of the
+    /// mean square.
+    void SetMeasurePoints(std::size_t points) { set(measure_points_, points); }
+    std::size_t GetMeasurePoints() const { return measure_points_; }
+    /// What the last update measured, of each isovalue.
+    const std::vector<MeasuredError>& GetMeasuredErrors() const { return measured_; }
     /// A distance that the surface and that of all data keep there and back, in units of length.
     void SetDistance(double distance) {
         Projection kept = GetProjection();
@@ -83,7 +97,15 @@ private:
         }
         bounds_ = {};
         for (const auto& each : drawn) bounds_.add_bounds(each);
+        measure(prerolls, drawn, isovalues, work);
+        const auto data = poly_data_of(drawn, isovalues);
+        if (!measured_.empty()) add_measured(*data);
+        return data;
+    }
 
+    template <int dimension>
+    vtkSmartPointer<vtkPolyData> poly_data_of(std::vector<Isosurface<dimension>>& drawn,
+                                              const std::vector<double>& isovalues) {
         if (!outlines_) {
             std::vector<Surface<dimension>> surfaces;
             for (auto& each : drawn) surfaces.push_back(std::move(each.surface));
@@ -95,6 +117,36 @@ private:
             return together(edges, isovalues);
         }
         throw InvalidInput("outlines are those of elements on surfaces; the grid has dimension 2");
+    }
+
+    template <int dimension>
+    void measure(const Prerolls& prerolls, const std::vector<Isosurface<dimension>>& drawn,
+                 const std::vector<double>& isovalues, const Work& work) {
+        measured_.clear();
+        if (measure_points_ == 0) return;
+        if constexpr (dimension == 3) {
+            for (std::size_t i = 0; i < drawn.size(); ++i) {
+                measured_.push_back(
+                    measure_error(prerolls, drawn[i].surface, isovalues[i], measure_points_, work));
+            }
+        } else {
+            throw InvalidInput("errors are measured of surfaces; the grid has dimension 2");
+        }
+    }
+    void add_measured(vtkPolyData& data) const {
+        const auto add = [&](const char* name, Measured MeasuredError::*number) {
+            const vtkNew<vtkDoubleArray> array;
+            array->SetName(name);
+            array->SetNumberOfComponents(3);
+            for (const MeasuredError& each : measured_) {
+                const Measured& m = each.*number;
+                array->InsertNextTuple3(m.greatest, m.mean, m.rms);
+            }
+            data.GetFieldData()->AddArray(array);
+        };
+        add("error", &MeasuredError::value);
+        add("distance", &MeasuredError::distance);
+        add("distance back", &MeasuredError::back);
     }
 
     /// All surfaces as one; where there are several, each cell with its isovalue.
@@ -122,6 +174,7 @@ private:
             add(part.vertices, all.vertices);
             add(part.normals, all.normals);
             add(part.attributes, all.attributes);
+            add(part.reference, all.reference);
         }
         const auto data = make_poly_data(all, names());
         data->GetCellData()->AddArray(value);
@@ -132,7 +185,9 @@ private:
     std::vector<double> more_;
     bool outlines_ = false;
     IsosurfaceOptions options_;
+    std::size_t measure_points_ = 0;
     ErrorBounds bounds_;
+    std::vector<MeasuredError> measured_;
     double drawn_threshold_ = 0;
 };
 

@@ -50,6 +50,9 @@ public:
     /// Closes the slice along the boundary of the domain, around where the function is positive.
     void SetCap(bool on) { set(options_.cap, on); }
     bool GetCap() const { return options_.cap; }
+    /// Whether cells tell where in their element each of their corners lies ("reference").
+    void SetReference(bool on) { set(options_.reference, on); }
+    bool GetReference() const { return options_.reference; }
 
     vtkMTimeType GetMTime() override {
         const vtkMTimeType own = Superclass::GetMTime();
@@ -60,26 +63,30 @@ protected:
     SliceSource() = default;
     const char* GetClassNameInternal() const override { return "SliceSource"; }
 
-    vtkSmartPointer<vtkPolyData> draw(Prerolls& prerolls, const Work& work) override {
-        if (function_ == nullptr) return draw_along(Plane(origin_, normal_), prerolls, work);
+    /// What draw(function, work) makes of the function whose zero is the slice. Functions of VTK
+    /// are called by one thread.
+    template <class Draw>
+    auto with_function(const Work& work, const Draw& draw) const {
+        if (function_ == nullptr) return draw(Plane(origin_, normal_), work);
         auto* const plane = vtkPlane::SafeDownCast(function_);
         if (plane == nullptr || plane->GetTransform() != nullptr) {
-            return draw_along(ImplicitLevelFunction(*function_), prerolls, {});
+            return draw(ImplicitLevelFunction(*function_), Work{});
         }
         Point origin;
         Point normal;
         plane->GetOrigin(origin.data());
         plane->GetNormal(normal.data());
-        return draw_along(Plane(origin, normal), prerolls, work);
+        return draw(Plane(origin, normal), work);
+    }
+
+    vtkSmartPointer<vtkPolyData> draw(Prerolls& prerolls, const Work& work) override {
+        return with_function(work, [&](const LevelFunction& function, const Work& how) {
+            return make_poly_data(slice(prerolls, function, projection(), options_, how).surface,
+                                  names());
+        });
     }
 
 private:
-    vtkSmartPointer<vtkPolyData> draw_along(const LevelFunction& function, Prerolls& prerolls,
-                                            const Work& work) const {
-        return make_poly_data(slice(prerolls, function, projection(), options_, work).surface,
-                              names());
-    }
-
     Point origin_{0, 0, 0};
     Point normal_{0, 0, 1};
     vtkSmartPointer<vtkImplicitFunction> function_;

@@ -29,8 +29,9 @@
 namespace nestgrid {
 
 /// A sink (surface.hpp): triangles become polygons, segments lines. Cells have the number of their
-/// element in the order of extraction ("element") and its level ("level"); points have the
-/// attributes, each an array of its own name, and normals where they are asked for ("Normals").
+/// element in the order of extraction ("element") and its level ("level"), and where references are
+/// asked for, three numbers for each of their corners ("reference"); points have the attributes,
+/// each an array of its own name, and normals where they are asked for ("Normals").
 template <int dimension>
 class PolyDataSink final : public MeshSink<dimension> {
 public:
@@ -66,6 +67,7 @@ public:
             level_->InsertNextValue(known ? part.level_of[e] : 0);
         }
         elements_ += static_cast<int>(part.level_of.size());
+        add_references(part.reference);
     }
     Point position(std::uint32_t vertex) const override {
         Point x;
@@ -85,6 +87,19 @@ public:
     }
 
 private:
+    /// \param places of the corners of simplices, corner by corner
+    void add_references(std::span<const Point> places) {
+        if (places.empty()) return;
+        if (reference_ == nullptr) {
+            reference_ = vtkSmartPointer<vtkDoubleArray>::New();
+            reference_->SetName("reference");
+            reference_->SetNumberOfComponents(3 * dimension);
+            data_->GetCellData()->AddArray(reference_);
+        }
+        for (const Point& place : places) {
+            for (const double x : place) reference_->InsertNextValue(x);
+        }
+    }
     /// \param count of attributes, vertex by vertex
     void add_attributes(std::span<const double> values, std::size_t count) {
         for (std::size_t i = attributes_.size(); i < count; ++i) {
@@ -106,6 +121,7 @@ private:
     vtkSmartPointer<vtkIntArray> element_ = vtkSmartPointer<vtkIntArray>::New();
     vtkSmartPointer<vtkIntArray> level_ = vtkSmartPointer<vtkIntArray>::New();
     std::vector<vtkSmartPointer<vtkDoubleArray>> attributes_;
+    vtkSmartPointer<vtkDoubleArray> reference_;
     int elements_ = 0;
 };
 

@@ -99,6 +99,48 @@ def check_image_data():
     assert fewer.triangles.shape[0] < expected.triangles.shape[0]
 
 
+def check_measures():
+    """What the package measures of each surface is told with it."""
+    wavelet = pv.Wavelet(WholeExtent=[-10, 10, -8, 8, -6, 6])
+    image = fetch(wavelet)
+    samples = vtk_to_numpy(image.GetPointData().GetArray("RTData"))
+    volume = nestgrid.Volume(
+        samples.reshape(image.GetDimensions(), order="F"), origin=(-10, -8, -6)
+    )
+    filter = pv.NestgridIsosurface(Input=wavelet, Isovalue=157, Threshold=20, Measure=1)
+    for values in ([157], [157, 120]):
+        filter.MoreIsovalues = values[1:]
+        told = fetch(filter).GetFieldData()
+        for i, value in enumerate(values):
+            measured = volume.measure(volume.isosurface(value, 20, cuts="linear"), value)
+            for name in ("error", "distance", "distance_back"):
+                row = told.GetArray(name.replace("_", " ")).GetTuple3(i)
+                assert row == (measured[name], measured[name + "_mean"], measured[name + "_rms"])
+            assert measured["distance"] > 0
+    filter.Measure = 0
+    assert fetch(filter).GetFieldData().GetArray("error") is None
+
+
+def check_abort():
+    """An observer of progress ends the drawing: nothing is drawn, and the next update draws all."""
+    wavelet = pv.Wavelet(WholeExtent=[-60, 60, -60, 60, -60, 60])
+    fetch(wavelet)
+    filter = pv.NestgridIsosurface(Input=wavelet, Isovalue=157, Indicator="visual", Threshold=0.1)
+    algorithm = filter.GetClientSideObject()
+    heard = []
+
+    def end(caller, event):
+        heard.append(event)
+        caller.SetAbortExecute(1)
+
+    tag = algorithm.AddObserver("ProgressEvent", end)
+    assert fetch(filter).GetNumberOfPolys() == 0
+    assert heard, "the drawing tells nobody that it goes on"
+    algorithm.RemoveObserver(tag)
+    filter.Threshold = 0.2
+    assert fetch(filter).GetNumberOfPolys() > 0
+
+
 def check_where_and_how():
     """What holds in a part of space, other shapes, bands and boundaries: as the package draws."""
     wavelet = pv.Wavelet(WholeExtent=[-10, 10, -8, 8, -6, 6])
@@ -483,6 +525,8 @@ def check_state_and_picture():
 
 
 check_image_data()
+check_measures()
+check_abort()
 check_where_and_how()
 check_several_isovalues()
 check_outlines()

@@ -281,6 +281,15 @@ SHAPE = """
   data, there and back, in units of length; 0: it keeps its place.</Documentation>
 </DoubleVectorProperty>
 """
+MEASURE = """
+<IntVectorProperty name="Measure" command="SetMeasure" number_of_elements="1" default_values="0"
+    panel_visibility="advanced">
+  <BooleanDomain name="bool"/>
+  <Documentation>Measure how far the surface is from the data and from that of all data, there and
+  back: field data "error", "distance" and "distance back" have, for each isovalue, the greatest, the
+  mean and the root of the mean square.</Documentation>
+</IntVectorProperty>
+"""
 WHERE = (BLEND, LENS, REGION, POSITION_ERROR)
 OF_SURFACES = (OUTLINES, *WHERE)
 INPUT = """
@@ -336,11 +345,30 @@ def properties(*texts):
     return decorate
 
 
+class Aborted(Exception):
+    """The reader has ended what is drawn."""
+
+
+def told(measured):
+    """What was measured of surfaces, as arrays of field data."""
+    for name, key in (("error", "error"), ("distance", "distance"), ("distance back", "distance_back")):
+        array = vtkDoubleArray()
+        array.SetName(name)
+        array.SetNumberOfComponents(3)
+        for each in measured:
+            array.InsertNextTuple3(each[key], each[key + "_mean"], each[key + "_rms"])
+        yield array
+
+
 class Together:
     """Surfaces of several values as one data set, each triangle of which tells its value."""
 
     def __init__(self, values, surfaces):
         self._parts = list(zip(values, surfaces))
+
+    @property
+    def parts(self):
+        return self._parts
 
     def outlines(self):
         return Together(*zip(*((value, each.outlines()) for value, each in self._parts)))
@@ -383,6 +411,7 @@ class Drawing(VTKPythonAlgorithmBase):
         self._region = {"bounds": (0.0,) * 6, "threshold": 0.0}
         self._colours = {"colour_tolerance": 0.0}
         self._places = {"position_error": 0.0}
+        self._measure = {"measure": False}
 
     def _set(self, where, name, value):
         if where[name] != value:
@@ -458,6 +487,9 @@ class Drawing(VTKPythonAlgorithmBase):
 
     def SetPositionError(self, value):
         self._set(self._places, "position_error", value)
+
+    def SetMeasure(self, value):
+        self._set(self._measure, "measure", bool(value))
 
     def SetBand(self, low, high):
         self._set(self._band, "values", (low, high))
@@ -577,17 +609,38 @@ class Drawing(VTKPythonAlgorithmBase):
         options = {**self.collapsed(self.fineness(without=("distance",))), **self._elements}
         return field.height_field(self._scale["scale"] or None, **options)
 
+    def drawn(self, field, drawing):
+        """What is drawn, and what was measured of its surfaces."""
+        surface = drawing(field)
+        measured = []
+        if self._measure["measure"] and drawing == self.isosurface:
+            parts = surface.parts if self._more_isovalues else [(self._isovalue, surface)]
+            measured = [field.measure(each, value) for value, each in parts]
+        return surface.outlines() if self._elements["elements"] else surface, measured
+
+    def look(self):
+        """Tells observers that the drawing goes on, and ends it where one of them asks for that."""
+        self.UpdateProgress(self.GetProgress())
+        if self.GetAbortExecute():
+            raise Aborted
+
     def draw(self, outInfo, field_of_data, drawing, name):
         """Draws into the output. What the library refuses is empty, with a message in the log."""
         output = vtkPolyData.GetData(outInfo)
+        self.SetAbortExecute(0)  # that of the last drawing
         try:
-            surface = drawing(field_of_data())
-            if self._elements["elements"]:
-                surface = surface.outlines()
+            surface, measured = nestgrid._nestgrid.watched(
+                lambda: self.drawn(field_of_data(), drawing), self.look
+            )
+        except Aborted:
+            output.Initialize()
+            return
         except (nestgrid.InvalidInput, nestgrid.GridError, nestgrid.IoError) as error:
             print_error(f"nestgrid: {error}")
             return
         data = surface.to_vtk()
+        for array in told(measured) if measured else ():
+            data.GetFieldData().AddArray(array)
         values = data.GetPointData().GetArray("value")
         if values is not None:
             values.SetName(name)
@@ -642,7 +695,7 @@ class Filter(Drawing):
 @smproxy.filter(name="NestgridIsosurface", label="Nestgrid Isosurface")
 @properties(
     INPUT, ARRAY, ISOVALUE, MORE_ISOVALUES, THRESHOLD, MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE,
-    DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES, CUTS, *OF_SURFACES,
+    DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES, CUTS, MEASURE, *OF_SURFACES,
 )
 class NestgridIsosurface(Filter):
     def RequestData(self, request, inInfo, outInfo):
@@ -729,7 +782,7 @@ FREE_ISOVALUE = """
 @properties(
     FILE_NAMES, FIELD_NAME, DRAW, FREE_ISOVALUE, MORE_ISOVALUES, FREE_PLANE, NORMAL, THRESHOLD,
     MAX_TRIANGLES, ERROR, COLLAPSE, DISTANCE, DISTANCE_FIELD, INDICATOR, NORMALS, CAP, AT_NODES,
-    CUTS, *OF_SURFACES,
+    CUTS, MEASURE, *OF_SURFACES,
 )
 class NestgridReader(Drawing):
     """Draws hierarchies from files; their elements are no data of VTK."""
