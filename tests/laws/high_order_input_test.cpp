@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <nestgrid/algorithms/hierarchy_copy.hpp>
 #include <nestgrid/algorithms/high_order.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/check_grid.hpp>
@@ -183,6 +184,8 @@ TEST_F(HighOrderInput, OtherGridsAndFieldsAreRefused) {
                              {Shape::hexahedron, {8, 1, 9, 3, 10, 5, 11, 7}}});
     grid.rule = &halved;
     expect_refused([&] { const HighOrder data(grid, OtherField()); }, "by the rule 'halved'");
+    expect_refused([&] { const HierarchyCopy copy(erase(world, field)); },
+                   "data of higher degree cannot be copied");
 }
 
 /// The table of a field in C tells the same polynomials, and its failures reach the caller.

@@ -8,7 +8,7 @@
 // one drawing of all leaves, it pays where the same state is drawn often: series of isovalues,
 // searches for a budget, films around a still solution.
 //     const HierarchyCopy copy(erase(grid, field));
-//     IsosurfaceSeries series(copy);
+//     const Prerolls prerolls(copy);
 // Memory: for each element that is split four bytes a corner, new node and child, and eight more;
 // for each node 24 bytes and its values. In octrees that is about 22 bytes a leaf and 32 a node.
 #pragma once

@@ -41,7 +41,8 @@ HierarchyFacts facts_of_grid(const Grid& grid) {
         if (may_offer<Grid>(feature) && offers(grid, feature)) facts.features |= bit;
     }
     facts.node_count = dense_key_count(grid);
-    if constexpr (requires { grid.conforming(); }) facts.conforming = grid.conforming();
+    NoContext none;
+    facts.conforming = call_conforming(grid, none);
     if constexpr (requires { grid.whole(); }) facts.fills_rows = grid.whole();
     facts.only_shape = only_shape<Grid>();
     if constexpr (requires { grid.shared_nodes(); }) facts.shared = grid.shared_nodes();
@@ -63,18 +64,18 @@ NESTGRID_INLINE void describe_member(const Grid& grid, const HierarchyFacts& fac
                                      std::size_t c, MemberMasks& masks) {
     Member& member = family.members[c];
     set_handle(member.element, e);
-    if constexpr (may_offer<Grid>(Feature::presence)) {
-        if (facts.offers(Feature::presence)) {
-            member.presence = call_presence(grid, context, e);
-            if (member.presence == Presence::elsewhere) return;
-        }
+    // Known when this is compiled where the grid cannot have the feature.
+    const auto has = [&](Feature feature) NESTGRID_INLINE_LAMBDA {
+        return may_offer<Grid>(feature) && facts.offers(feature);
+    };
+    if (has(Feature::presence)) {
+        member.presence = call_presence(grid, context, e);
+        if (member.presence == Presence::elsewhere) return;
     }
-    if constexpr (may_offer<Grid>(Feature::masked)) {
-        if (facts.offers(Feature::masked) && call_masked(grid, context, e)) return;
-    }
+    if (has(Feature::masked) && call_masked(grid, context, e)) return;
     const NodeMask bit = NodeMask{1} << c;
-    if constexpr (may_offer<Grid>(Feature::hidden)) {
-        if (facts.offers(Feature::hidden)) member.hidden = call_hidden(grid, context, e);
+    if (has(Feature::hidden)) {
+        member.hidden = call_hidden(grid, context, e);
         if (member.hidden == Hidden::wholly) masks.hidden |= bit;
     }
     member.rule = call_split(grid, context, e);
@@ -83,23 +84,15 @@ NESTGRID_INLINE void describe_member(const Grid& grid, const HierarchyFacts& fac
         return;
     }
     masks.split |= bit;
-    if constexpr (may_offer<Grid>(Feature::own_keys)) {
-        if (facts.offers(Feature::own_keys)) {
-            member.first_key = static_cast<std::uint32_t>(family.key_count);
-            // A grid that gives the keys of another rule writes no farther than the spare room, and
-            // check_grid can name the mistake.
-            const std::size_t count = member.rule->new_nodes.size();
-            call_new_keys(grid, context, e, family.add_keys(count, max_new_nodes));
-        }
+    if (has(Feature::own_keys)) {
+        member.first_key = static_cast<std::uint32_t>(family.key_count);
+        // A grid that gives the keys of another rule writes no farther than the spare room, and
+        // check_grid can name the mistake.
+        const std::size_t count = member.rule->new_nodes.size();
+        call_new_keys(grid, context, e, family.add_keys(count, max_new_nodes));
     }
-    if constexpr (may_offer<Grid>(Feature::constrained)) {
-        if (facts.offers(Feature::constrained)) {
-            member.constrained = call_constrained(grid, context, e);
-        }
-    }
-    if constexpr (may_offer<Grid>(Feature::outside)) {
-        if (facts.offers(Feature::outside)) member.outside = call_outside(grid, context, e);
-    }
+    if (has(Feature::constrained)) member.constrained = call_constrained(grid, context, e);
+    if (has(Feature::outside)) member.outside = call_outside(grid, context, e);
 }
 
 /// Describes the only member of a family, or one that is described by itself.
@@ -208,37 +201,29 @@ public:
                  Point* positions, unsigned* boundary) const override {
         with(task, [&](auto& context) {
             const auto& e = element_of<Element>(element);
-            if constexpr (may_offer<Grid>(Feature::own_keys)) {
-                if (keys != nullptr) {
-                    call_corner_keys(*grid_, context, e, std::span<NodeKey>(keys, count));
-                }
+            if (may_offer<Grid>(Feature::own_keys) && keys != nullptr) {
+                call_corner_keys(*grid_, context, e, std::span<NodeKey>(keys, count));
             }
-            if constexpr (may_offer<Grid>(Feature::own_positions)) {
-                if (positions != nullptr) {
-                    call_corner_positions(*grid_, context, e, std::span<Point>(positions, count));
-                }
+            if (may_offer<Grid>(Feature::own_positions) && positions != nullptr) {
+                call_corner_positions(*grid_, context, e, std::span<Point>(positions, count));
             }
-            if constexpr (may_offer<Grid>(Feature::boundary_faces)) {
-                if (boundary != nullptr) *boundary = call_boundary_faces(*grid_, context, e);
+            if (may_offer<Grid>(Feature::boundary_faces) && boundary != nullptr) {
+                *boundary = call_boundary_faces(*grid_, context, e);
             }
         });
     }
 
     void new_positions(Task* task, const Handle& element, NodeMask which,
                        std::span<Point> out) const override {
-        if constexpr (may_offer<Grid>(Feature::new_positions)) {
-            with(task, [&](auto& context) {
-                call_new_positions(*grid_, context, element_of<Element>(element), which, out);
-            });
-        }
+        with(task, [&](auto& context) {
+            call_new_positions(*grid_, context, element_of<Element>(element), which, out);
+        });
     }
 
     void corner_gradients(Task* task, const Handle& element, std::span<Point> out) const override {
-        if constexpr (may_have_gradients_) {
-            with(task, [&](auto& context) {
-                call_corner_gradients(*field_, context, element_of<Element>(element), out);
-            });
-        }
+        with(task, [&](auto& context) {
+            call_corner_gradients(*field_, context, element_of<Element>(element), out);
+        });
     }
 
     void node_gradients(std::span<const NodeKey> nodes, std::span<Point> out) const override {
@@ -250,57 +235,50 @@ public:
     }
 
     int degree(Task* task, const Handle& leaf) const override {
-        if constexpr (may_have_degree_) {
-            return with(task, [&](auto& context) {
-                return static_cast<int>(call_degree(*field_, context, element_of<Element>(leaf)));
-            });
-        }
-        return 1;
+        if (!may_have_degree_) return 1;
+        return with(task, [&](auto& context) {
+            return static_cast<int>(call_degree(*field_, context, element_of<Element>(leaf)));
+        });
     }
     void evaluate(Task* task, const Handle& leaf, std::span<const Point> reference,
                   Real* out) const override {
-        if constexpr (may_have_degree_) {
-            with(task, [&](auto& context) {
-                call_evaluate(*field_, context, element_of<Element>(leaf), reference,
-                              std::span<Real>(out, reference.size() * components_));
-            });
-        }
+        with(task, [&](auto& context) {
+            call_evaluate(*field_, context, element_of<Element>(leaf), reference,
+                          std::span<Real>(out, reference.size() * components_));
+        });
     }
 
     int geometry_degree(Task* task, const Handle& leaf) const override {
-        if constexpr (may_offer<Grid>(Feature::geometry_degree)) {
-            return with(task, [&](auto& context) {
-                const auto& e = element_of<Element>(leaf);
-                return static_cast<int>(call_geometry_degree(*grid_, context, e));
-            });
-        }
-        return 1;
+        if (!may_offer<Grid>(Feature::geometry_degree)) return 1;
+        return with(task, [&](auto& context) {
+            const auto& e = element_of<Element>(leaf);
+            return static_cast<int>(call_geometry_degree(*grid_, context, e));
+        });
     }
     void map(Task* task, const Handle& leaf, std::span<const Point> reference,
              std::span<Point> out) const override {
-        if constexpr (may_offer<Grid>(Feature::geometry_degree)) {
-            with(task, [&](auto& context) {
-                call_map(*grid_, context, element_of<Element>(leaf), reference, out);
-            });
-        }
+        with(task, [&](auto& context) {
+            call_map(*grid_, context, element_of<Element>(leaf), reference, out);
+        });
     }
 
     std::array<NodeKey, 2> hanging_parents(NodeKey node) const override {
-        if constexpr (may_offer<Grid>(Feature::hanging_parents)) {
-            return grid_->hanging_parents(node);
-        }
-        return {node, node};
+        if (!may_offer<Grid>(Feature::hanging_parents)) return {node, node};
+        NoContext none;
+        return call_hanging_parents(*grid_, none, node);
     }
 
     void star_rows(const std::function<void(const StarRow&)>& function) const override {
-        if constexpr (has_star_rows_) grid_->for_each_star_row(function);
+        NoContext none;
+        call_for_each_star_row(*grid_, none, function);
     }
     void row_values(NodeKey first, std::size_t stride, std::span<Real> out) const override {
-        if constexpr (KnowsRows<Field>) field_->row_values(first, stride, out);
+        NoContext none;
+        call_row_values(*field_, none, first, stride, out);
     }
     Point node_position(NodeKey node) const override {
-        if constexpr (requires { grid_->node_position(node); }) return grid_->node_position(node);
-        return {};
+        NoContext none;
+        return call_node_position(*grid_, none, node);
     }
 
     void bisect(const Handle& element, PatchVisitor& visitor) const override {
@@ -348,24 +326,18 @@ private:
         HierarchyFacts facts = facts_of_grid(grid);
         facts.components = components_of<Field>();
         facts.decodes = decodes_;
-        if constexpr (may_have_gradients_) {
-            if (offers_gradients<Grid>(field)) {
-                facts.features |= static_cast<unsigned>(Feature::gradients);
-            }
+        if (offers_gradients<Grid>(field)) {
+            facts.features |= static_cast<unsigned>(Feature::gradients);
         }
         if (offers_polynomials<Grid>(field)) {
             facts.features |= static_cast<unsigned>(Feature::degree);
         }
-        if constexpr (has_star_rows_ && KnowsRows<Field>) {
-            facts.knows_stars = nestgrid::knows_stars(grid) && nestgrid::knows_stars(field);
-        }
-        if constexpr (has_star_rows_ && requires { grid.node_position(NodeKey{}); }) {
-            facts.knows_star_positions = nestgrid::knows_stars(grid);
-        }
+        facts.knows_stars = has_star_rows_ && KnowsRows<Field> && nestgrid::knows_stars(grid) &&
+                            nestgrid::knows_stars(field);
+        facts.knows_star_positions = has_star_rows_ && requires { grid.node_position(NodeKey{}); }
+        &&nestgrid::knows_stars(grid);
         if constexpr (may_know_patches_) facts.knows_patches = knows_patches(grid, field, facts);
-        if constexpr (GivesGradientsAtNodes<Field, Grid>) {
-            facts.gradients_at_nodes = facts.knows_patches;
-        }
+        facts.gradients_at_nodes = GivesGradientsAtNodes<Field, Grid> && facts.knows_patches;
         facts.gradients_by_key =
             GivesGradientsByKey<Field, Grid> && facts.offers(Feature::gradients);
         facts.bisects_means = facts.knows_patches && facts.dimension == 3;

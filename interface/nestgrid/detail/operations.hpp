@@ -136,21 +136,33 @@ concept ReturnsAs = std::is_void_v<Result> || std::same_as<T, Result> ||
         }                                                                      \
     }
 
-/// That, and names_name<Model, Result, Ctx, Args...>: Model has a member of that name.
+/// What a class answers to an operation that it does not have: a value that is 0, false or empty.
+struct NoAnswer {
+    template <class T>
+    constexpr operator T() const {
+        return T{};
+    }
+};
+
+/// That, and call_name() where Model has no such member, which gives NoAnswer.
+/// names_name<Model, Result, Ctx, Args...>: Model has a member of that name.
 /// fits_name<...>: it has one that takes Args, perhaps Ctx& after them, and returns Result.
-#define NESTGRID_OPTIONAL_OPERATION(whose, feature, name, signature, ...) \
-    NESTGRID_OPERATION(name)                                              \
-    template <class Model, class Result, class Ctx, class... Args>        \
-    concept names_##name = requires {                                     \
-        &Model::name;                                                     \
-    }                                                                     \
-    || offers_##name<Model, NoContextArgument, Args...>;                  \
-    template <class Model, class Result, class Ctx, class... Args>        \
-    concept fits_##name = requires(const Model& m, Args... args) {        \
-        { m.name(args...) } -> ReturnsAs<Result>;                         \
-    }                                                                     \
-    || requires(const Model& m, Ctx& c, Args... args) {                   \
-        { m.name(args..., c) } -> ReturnsAs<Result>;                      \
+#define NESTGRID_OPTIONAL_OPERATION(whose, feature, name, signature, ...)        \
+    NESTGRID_OPERATION(name)                                                     \
+    template <class Model, class Ctx, class... Args>                             \
+        requires(!offers_##name<Model, Ctx, Args...>)                            \
+    constexpr NoAnswer call_##name(const Model&, Ctx&, Args&&...) { return {}; } \
+    template <class Model, class Result, class Ctx, class... Args>               \
+    concept names_##name = requires {                                            \
+        &Model::name;                                                            \
+    }                                                                            \
+    || offers_##name<Model, NoContextArgument, Args...>;                         \
+    template <class Model, class Result, class Ctx, class... Args>               \
+    concept fits_##name = requires(const Model& m, Args... args) {               \
+        { m.name(args...) } -> ReturnsAs<Result>;                                \
+    }                                                                            \
+    || requires(const Model& m, Ctx& c, Args... args) {                          \
+        { m.name(args..., c) } -> ReturnsAs<Result>;                             \
     };
 
 NESTGRID_OPERATION(split)
