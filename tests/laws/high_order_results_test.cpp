@@ -91,6 +91,40 @@ TEST(HighOrderCollapses, KeepTheErrorAndStayClosed) {
     EXPECT_LT(left, drawn_triangles / 2);
 }
 
+/// Heights and colours of every point of the collapsed graph are within the bound.
+TEST(HighOrderCollapses, KeepTheErrorOfHeights) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        const OnShapes<2> drawn(Cells::columns, hanging_world(seed), gyroid);
+        const Prerolls prerolls(drawn.world, drawn.field);
+        const double scale = 3;
+        Projection how{.threshold = 0.1, .indicator = "error"};
+        const auto whole = height_field(prerolls, scale, how);
+        how.collapse = true;
+        const auto fewer = height_field(prerolls, scale, how);
+        EXPECT_LT(fewer.surface.simplices.size(), whole.surface.simplices.size() / 2);
+        EXPECT_LE(fewer.error_bound, (0.1 + drawn.data.jump()) * (1 + 1e-6));
+        double heights_off = 0;
+        double colours_off = 0;
+        for (const auto& t : fewer.surface.simplices) {
+            for (const Point& weight : {Point{1, 1, 1}, Point{2, 1, 0}, Point{0, 2, 1},
+                                        Point{1, 0, 2}, Point{2.8, 0.1, 0.1}}) {
+                Point x{0, 0, 0};
+                double colour = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    x = x + weight[k] / 3 * fewer.surface.vertices[t[k]];
+                    colour += weight[k] / 3 * fewer.surface.attributes[t[k]];
+                }
+                const double u = drawn.world({x[0], x[1], 0});
+                heights_off = std::max(heights_off, std::abs(x[2] / scale - u));
+                colours_off = std::max(colours_off, std::abs(colour - u));
+            }
+        }
+        EXPECT_LE(heights_off, fewer.error_bound * (1 + 1e-6));
+        EXPECT_LE(colours_off, fewer.error_bound * (1 + 1e-6));
+        EXPECT_GT(heights_off, 0.01);
+    }
+}
+
 /// The greatest difference of the colours of a surface from the data, at 15 points of triangles.
 template <class World>
 double colours_off(const World& world, const Surface<3>& surface) {
@@ -145,6 +179,31 @@ TEST(HighOrderMeasures, AreOfThePolynomials) {
     EXPECT_GT(error.value.mean, 0);
     EXPECT_LT(error.distance.greatest, 0.2);
     EXPECT_LT(error.back.greatest, 0.2);
+}
+
+/// Distances from a sphere, there and back, are known: a surface of coarse triangles is compared
+/// with one that is finer by the factor that the tenth of the error is.
+TEST(HighOrderMeasures, DistancesAreThoseOfASphere) {
+    const OnBoxes<3> boxes(WorldOptions{.least_degree = 2, .greatest_degree = 2}, square<3>);
+    const Prerolls prerolls(boxes.world, boxes.field);
+    const double radius = 0.8;
+    const auto drawn =
+        isosurface<3>(prerolls, radius * radius, {.threshold = 0.2, .indicator = "error"});
+    double off = 0;
+    for (const auto& t : drawn.surface.simplices) {
+        for (const Point& weight : {Point{1, 1, 1}, Point{1.5, 1.5, 0}, Point{0, 1.5, 1.5},
+                                    Point{1.5, 0, 1.5}, Point{3, 0, 0}}) {
+            Point x{0, 0, 0};
+            for (std::size_t k = 0; k < 3; ++k) {
+                x = x + weight[k] / 3 * drawn.surface.vertices[t[k]];
+            }
+            off = std::max(off, std::abs(norm(x) - radius));
+        }
+    }
+    const MeasuredError error = measure_error(prerolls, drawn.surface, radius * radius, 20000);
+    EXPECT_GT(off, 0.02);
+    EXPECT_NEAR(error.distance.greatest, off, 0.15 * off);
+    EXPECT_NEAR(error.back.greatest, off, 0.3 * off);
 }
 
 TEST(HighOrderCollapses, RefuseWhatTheyDoNot) {
