@@ -54,8 +54,9 @@ public:
     /// \param same_coarse whether all ranks list the same coarse elements
     NodeSearch(const Hierarchy<float>& grid, bool same_coarse)
         : grid_{&grid},
-          places_{may_differ(grid)},
           named_{grid.offers(Feature::own_keys) && same_coarse},
+          places_{grid.offers(Feature::new_positions) ||
+                  (grid.offers(Feature::own_keys) && !named_)},
           on_boundary_{same_coarse},
           task_{grid.open()},
           walk_(grid, {.values = false, .keys = true, .positions = places_, .on_ranks = true}) {}
@@ -139,8 +140,8 @@ private:
     }
 
     const Hierarchy<float>* grid_;
-    bool places_;
-    bool named_;
+    bool named_;        // own keys are compared under names
+    bool places_;       // places are compared
     bool on_boundary_;  // else all nodes are looked for
     std::unique_ptr<Task> task_;
     Family family_;

@@ -66,22 +66,26 @@ private:
 void SharedNodes::find(std::span<const Candidate> candidates, std::size_t most_sharers,
                        bool compared) {
     const int size = ranks_->size();
+    const bool places = compared && std::any_of(candidates.begin(), candidates.end(),
+                                                [](const auto& node) { return node.place != 0; });
     Outbox question(size);
     for (const Candidate& node : candidates) {
         const std::uint64_t home = hash(node.name + 1) % static_cast<std::uint64_t>(size);
         Bytes& out = question.to(static_cast<int>(home));
+        if (out.empty()) put(out, static_cast<std::uint8_t>(places));
         put(out, node.name);
         if (!compared) continue;
         put(out, node.key);
-        put(out, node.place);
+        if (places) put(out, node.place);
     }
     Home home;
     question.send(*ranks_, [&](int rank, Reader& in) {
+        const bool with_places = in.get<std::uint8_t>() != 0;
         while (in.more()) {
             const auto name = in.get<NodeKey>();
             Candidate node{name, name, 0};
             if (compared) node.key = in.get<NodeKey>();
-            if (compared) node.place = in.get<std::uint64_t>();
+            if (with_places) node.place = in.get<std::uint64_t>();
             home.add(rank, node);
         }
     });

@@ -166,8 +166,8 @@ int compare_structured(const char* name, Ranks& ranks) {
         const auto leaves = leaves_of(*parts.solver);
         const auto found = draw_on_ranks(*parts.solver, noise, ranks);
         if (!noise) wrong += compare_functions(*parts.solver, ranks);
-        wrong += wrong_claims(*parts.solver, Coordinates::dimension == 2 ? 20 * 18 : 20 * 6 * 6,
-                              ranks);
+        wrong +=
+            wrong_claims(*parts.solver, Coordinates::dimension == 2 ? 20 * 18 : 20 * 6 * 6, ranks);
         if (ranks.rank() == 0) {
             const Structured<Coordinates> whole(MPI_COMM_SELF, 1, true);
             wrong += count_different(std::string("YaspGrid, ") + name + ", overlap " +
