@@ -70,7 +70,11 @@ std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
             "an error of positions is asked for, which is for curved cells that are drawn within "
             "an error");
     }
-    if (data != nullptr) projection.require_error_alone(data->greatest_degree());
+    if (data == nullptr) return data;
+    projection.require_error_alone(data->greatest_degree());
+    if (projection.least_threshold() == 0 && projection.max_triangles == 0) {
+        throw InvalidInput("data of higher degree are drawn within an error, which is above 0");
+    }
     return data;
 }
 

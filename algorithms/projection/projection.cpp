@@ -69,8 +69,6 @@ void Projection::require_error_alone(int degree) const {
         what = "by no blend yet";
     } else if (!asks_for_error()) {
         what = "by no threshold of nodes yet";
-    } else if (least_threshold() == 0 && max_triangles == 0) {
-        what = "which is above 0";
     }
     if (what.empty()) return;
     throw InvalidInput((degree > 1 ? "the field has degree " + std::to_string(degree)

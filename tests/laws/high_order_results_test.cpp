@@ -49,8 +49,10 @@ TEST(HighOrderProjections, KeepAnErrorOrAreRefusedOrDrawAtCorners) {
     };
     refused({.threshold = 0.2, .indicator = "error", .keeps_distance = true}, "by no distance");
     refused({.threshold = 0.2, .indicator = "error", .blend = 2}, "by no blend");
-    refused({.threshold = 0, .indicator = "error"}, "within an error, which is above 0");
-    refused({.indicator = "deviation"}, "within an error, which is above 0");
+    for (const Projection& none :
+         {Projection{.threshold = 0, .indicator = "error"}, Projection{.indicator = "deviation"}}) {
+        expect_refused([&] { (void)draw(none); }, "within an error, which is above 0");
+    }
     for (const Projection& how :
          {Projection{.threshold = 0.2}, Projection{.threshold = 0.2, .indicator = "visual"}}) {
         expect_refused([&] { (void)with_error(prerolls, how); }, "by no threshold of nodes");
