@@ -63,15 +63,18 @@ Projection told(Projection projection) {
 
 std::shared_ptr<const HighOrder> polynomials_for(const Prerolls& prerolls,
                                                  const Projection& projection, const Work& work) {
-    const bool exactly = projection.least_threshold() == 0 && projection.max_triangles == 0;
     std::shared_ptr<const HighOrder> data;
-    if (projection.asks_for_error() && !exactly) data = prerolls.high_order(work);
+    if (projection.asks_for_error()) data = prerolls.high_order(work);
     if (projection.position_error > 0 && (data == nullptr || data->geometry_degree() == 1)) {
         throw InvalidInput(
             "an error of positions is asked for, which is for curved cells that are drawn within "
             "an error");
     }
-    if (data != nullptr) projection.require_error_alone(data->greatest_degree());
+    if (data == nullptr) return data;
+    projection.require_error_alone(data->greatest_degree());
+    if (projection.least_threshold() == 0 && projection.max_triangles == 0) {
+        throw InvalidInput("data of higher degree are drawn within an error, which is above 0");
+    }
     return data;
 }
 

@@ -64,16 +64,16 @@ void Projection::check() const {
 void Projection::require_error_alone(int degree) const {
     std::string what;
     if (keeps_distance || indicator == "slope") {
-        what = "no distance";
+        what = "by no distance yet";
     } else if (blend != 1) {
-        what = "no blend";
+        what = "by no blend yet";
     } else if (!asks_for_error()) {
-        what = "no threshold of nodes";
+        what = "by no threshold of nodes yet";
     }
     if (what.empty()) return;
     throw InvalidInput((degree > 1 ? "the field has degree " + std::to_string(degree)
                                    : std::string("the grid has curved cells")) +
-                       " and is drawn within an error, by " + what + " yet");
+                       " and is drawn within an error, " + what);
 }
 
 }  // namespace nestgrid

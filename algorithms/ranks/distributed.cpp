@@ -46,34 +46,113 @@ bool may_differ(const Hierarchy<float>& grid) {
     return grid.offers(Feature::own_keys) || grid.offers(Feature::new_positions);
 }
 
-/// The nodes that other ranks may have: all nodes of the elements that this rank visits, with their
-/// places where these may differ; none where this rank has all leaves.
-std::vector<SharedNodes::Candidate> nodes_of(const Hierarchy<float>& grid) {
-    if (has_all_leaves(grid)) return {};
-    const bool places = may_differ(grid);
-    const Walk<float> walk(grid,
-                           {.values = false, .keys = true, .positions = places, .on_ranks = true});
+/// Finds the nodes that other ranks may have. Those of elements that are here in part; and below an
+/// element that is here wholly the ones on its boundary, as all leaves around others are below it,
+/// too. Where ranks list different coarse elements, all nodes that this rank has.
+class NodeSearch {
+public:
+    /// \param same_coarse whether all ranks list the same coarse elements
+    NodeSearch(const Hierarchy<float>& grid, bool same_coarse)
+        : grid_{&grid},
+          named_{grid.offers(Feature::own_keys) && same_coarse},
+          places_{grid.offers(Feature::new_positions) ||
+                  (grid.offers(Feature::own_keys) && !named_)},
+          on_boundary_{same_coarse},
+          task_{grid.open()},
+          walk_(grid, {.values = false, .keys = true, .positions = places_, .on_ranks = true}) {}
+
+    std::vector<SharedNodes::Candidate> run() {
+        if (has_all_leaves(*grid_)) return {};
+        for_each_element(walk_, true, [&](const ElementView<float>& view, const Split& split) {
+            look_at(view, split);
+        });
+        return std::move(nodes_);
+    }
+
+private:
+    struct Level {
+        /// The faces, of the element that is here wholly, that a node lies in, one bit each.
+        std::array<std::uint8_t, std::tuple_size_v<SplitKeys>> on;
+        /// As derived from ids of coarse elements, which all ranks list: the same on all.
+        std::array<NodeKey, std::tuple_size_v<SplitKeys>> name;
+    };
+    static constexpr std::uint8_t in_part = 0x80;  ///< of an element that is here in part
+
+    void look_at(const ElementView<float>& view, const Split& split) {
+        walk_.corners(view, keys_.data(), nullptr);
+        const std::size_t corners = view.corner_count();
+        std::size_t count = corners;
+        if (split.rule != nullptr) count = walk_.split_keys(view, split, keys_).size();
+        if (places_ && split.rule == nullptr) walk_.corners(view, nullptr, positions_.data());
+        if (places_ && split.rule != nullptr) {
+            const auto of = walk_.split_positions(view, split, positions_);
+            if (of.data() != positions_.data()) std::copy(of.begin(), of.end(), positions_.begin());
+        }
+        const Level& level = put_level(view, split, count);
+        for (std::size_t n = view.level == 0 ? 0 : corners; n < count; ++n) {
+            if (level.on[n] == 0 || !seen_.insert(keys_[n], {}).second) continue;
+            nodes_.push_back({named_ ? level.name[n] : keys_[n], keys_[n],
+                              places_ ? hash_of(positions_[n]) : 0});
+        }
+    }
+    /// \param count of the nodes, corners first
+    const Level& put_level(const ElementView<float>& view, const Split& split, std::size_t count) {
+        const auto depth = static_cast<std::size_t>(view.level);
+        if (levels_.size() < depth + 2) levels_.resize(depth + 2);
+        Level& level = levels_[depth];
+        const std::size_t corners = view.corner_count();
+        const bool whole = view.member->presence == Presence::here && on_boundary_;
+        const bool begins =
+            whole && (view.father == nullptr || view.father->member->presence != Presence::here);
+        if (depth == 0 && named_) put_coarse_names(view, level);
+        for (std::size_t k = 0; k < corners; ++k) {
+            if (depth > 0) {
+                level.on[k] = levels_[depth - 1].on[view.as->corner[k]];
+                level.name[k] = levels_[depth - 1].name[view.as->corner[k]];
+            }
+            if (begins) level.on[k] = faces_at(view.topology(), k);
+            if (!whole) level.on[k] = in_part;
+        }
+        for (std::size_t n = corners; n < count; ++n) {
+            const Stencil& of = split.rule->new_nodes[n - corners];
+            level.on[n] = 0xFF;
+            for (std::size_t i = 0; i < of.count; ++i) level.on[n] &= level.on[of.parent[i]];
+            if (named_) level.name[n] = derived_key(of, level.name.data());
+        }
+        return level;
+    }
+    void put_coarse_names(const ElementView<float>& view, Level& level) {
+        Coarse coarse;
+        grid_->coarse(task_.get(), view.coarse, coarse, family_);
+        for (std::size_t k = 0; k < view.corner_count(); ++k) {
+            level.name[k] = coarse_key(coarse.ids[k]);
+        }
+    }
+    /// The faces that a corner of an element lies in.
+    static std::uint8_t faces_at(const Topology& t, std::size_t corner) {
+        unsigned faces = 0;
+        for (std::size_t f = 0; f < t.faces; ++f) {
+            for (std::size_t i = 0; i < t.face[f].corners; ++i) {
+                faces |= unsigned{t.face[f].corner[i] == corner} << f;
+            }
+        }
+        return static_cast<std::uint8_t>(faces);
+    }
+
+    const Hierarchy<float>* grid_;
+    bool named_;        // own keys are compared under names
+    bool places_;       // places are compared
+    bool on_boundary_;  // else all nodes are looked for
+    std::unique_ptr<Task> task_;
+    Family family_;
+    Walk<float> walk_;
+    std::vector<Level> levels_;  // on the way down
     struct Seen {};
-    KeyTable<NodeKey, Seen> seen;
-    std::vector<SharedNodes::Candidate> nodes;
-    SplitKeys keys;
-    SplitPositions positions{};
-    for_each_element(walk, true, [&](const ElementView<float>& view, const Split& split) {
-        walk.corners(view, keys.data(), nullptr);
-        std::size_t count = view.corner_count();
-        if (split.rule != nullptr) count = walk.split_keys(view, split, keys).size();
-        if (places && split.rule == nullptr) walk.corners(view, nullptr, positions.data());
-        if (places && split.rule != nullptr) {
-            const auto of = walk.split_positions(view, split, positions);
-            if (of.data() != positions.data()) std::copy(of.begin(), of.end(), positions.begin());
-        }
-        for (std::size_t n = view.level == 0 ? 0 : view.corner_count(); n < count; ++n) {
-            if (!seen.insert(keys[n], {}).second) continue;
-            nodes.push_back({keys[n], places ? hash_of(positions[n]) : 0});
-        }
-    });
-    return nodes;
-}
+    KeyTable<NodeKey, Seen> seen_;
+    std::vector<SharedNodes::Candidate> nodes_;
+    SplitKeys keys_{};
+    SplitPositions positions_{};
+};
 
 /// A corner of the first coarse element of all ranks. Collective.
 /// \param first the least place of a coarse element of this rank
@@ -125,7 +204,7 @@ std::shared_ptr<const engine::SharedNodes> detail::share_nodes(const Hierarchy<f
     Coarse coarse;
     engine::together(shared.get(), asked, [&] {
         engine::require_drawn_on_ranks(grid);
-        nodes = engine::nodes_of(before);
+        nodes = engine::NodeSearch(before, !says.place).run();
         if (!says.place) {
             engine::for_each_claim(grid, [&](const auto& path) { claims.push_back(path); });
         }

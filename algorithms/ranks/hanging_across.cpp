@@ -26,7 +26,16 @@ struct Part {
         : corners{static_cast<std::uint8_t>(count)}, of_leaf{leaf} {
         for (std::size_t i = 0; i < count; ++i) key[i] = keys[of[i]];
     }
-    Part() = default;
+    explicit Part(Reader& in) {
+        const auto what = in.get<std::uint8_t>();
+        corners = what >> 1U;
+        of_leaf = (what & 1U) != 0;
+        for (std::size_t i = 0; i < corners; ++i) key[i] = in.get<NodeKey>();
+    }
+    void put_into(Bytes& out) const {
+        put(out, static_cast<std::uint8_t>(unsigned{corners} << 1U | unsigned{of_leaf}));
+        for (const NodeKey node : all()) put(out, node);
+    }
     std::span<const NodeKey> all() const { return std::span(key).first(corners); }
 };
 
@@ -53,7 +62,7 @@ public:
     }
     void exchange() {
         shared_->send(box_, [&](int, Reader& in) {
-            while (in.more()) told_.push_back(in.get<Part>());
+            while (in.more()) told_.emplace_back(in);
         });
     }
     HangingNodes find() {
@@ -92,7 +101,7 @@ private:
         }
     }
     void tell(const Part& part) {
-        shared_->route(part.all(), box_, [&](Bytes& out) { put(out, part); });
+        shared_->route(part.all(), box_, [&](Bytes& out) { part.put_into(out); });
     }
     void check(const ElementView<float>& view, const Split& split) {
         if (!probe_.divides_one_way()) return;

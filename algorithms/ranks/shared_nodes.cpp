@@ -16,18 +16,20 @@ class Home {
 public:
     void add(int rank, const SharedNodes::Candidate& node) {
         const auto [at, is_new] =
-            number_.insert(node.key, static_cast<std::uint32_t>(nodes_.size()));
+            number_.insert(node.name, static_cast<std::uint32_t>(nodes_.size()));
         if (is_new) nodes_.push_back({node, {}});
         Node& known = nodes_[*at];
-        if (known.node.place != node.place && conflict_.empty()) {
+        const bool two_keys = known.node.key != node.key;
+        if ((two_keys || known.node.place != node.place) && conflict_.empty()) {
             conflict_ = "ranks " + std::to_string(known.ranks.front()) + " and " +
-                        std::to_string(rank) +
-                        " have a node at two places under one key: own keys of a distributed grid, "
-                        "and its positions of nodes, must be the same on all ranks";
+                        std::to_string(rank) + " have a node " +
+                        (two_keys ? "under two keys" : "at two places under one key") +
+                        ": own keys of a distributed grid, and its positions of nodes, must be the "
+                        "same on all ranks";
         }
         known.ranks.push_back(rank);
     }
-    /// \throw GridError where nodes at two places have one key
+    /// \throw GridError where a node has two keys or two places
     void check() const {
         if (!conflict_.empty()) throw GridError(conflict_);
     }
@@ -62,20 +64,29 @@ private:
 }  // namespace
 
 void SharedNodes::find(std::span<const Candidate> candidates, std::size_t most_sharers,
-                       bool places) {
+                       bool compared) {
     const int size = ranks_->size();
+    const bool places = compared && std::any_of(candidates.begin(), candidates.end(),
+                                                [](const auto& node) { return node.place != 0; });
     Outbox question(size);
     for (const Candidate& node : candidates) {
-        const std::uint64_t home = hash(node.key + 1) % static_cast<std::uint64_t>(size);
+        const std::uint64_t home = hash(node.name + 1) % static_cast<std::uint64_t>(size);
         Bytes& out = question.to(static_cast<int>(home));
+        if (out.empty()) put(out, static_cast<std::uint8_t>(places));
+        put(out, node.name);
+        if (!compared) continue;
         put(out, node.key);
         if (places) put(out, node.place);
     }
     Home home;
     question.send(*ranks_, [&](int rank, Reader& in) {
+        const bool with_places = in.get<std::uint8_t>() != 0;
         while (in.more()) {
-            const auto key = in.get<NodeKey>();
-            home.add(rank, {key, places ? in.get<std::uint64_t>() : 0});
+            const auto name = in.get<NodeKey>();
+            Candidate node{name, name, 0};
+            if (compared) node.key = in.get<NodeKey>();
+            if (with_places) node.place = in.get<std::uint64_t>();
+            home.add(rank, node);
         }
     });
     together(this, "shared nodes", [&] { home.check(); });

@@ -27,6 +27,7 @@ class SharedNodes {
 public:
     /// A node that this rank has.
     struct Candidate {
+        NodeKey name;  ///< the same on all ranks; the key, where that is
         NodeKey key;
         std::uint64_t place;  ///< a hash of where it lies, the same on all ranks
     };
@@ -39,10 +40,10 @@ public:
     /// Finds out which other ranks have the same nodes. Collective.
     /// \param candidates at least all nodes that others may have, each once
     /// \param most_sharers nodes that more ranks have are common
-    /// \param places whether places are compared
+    /// \param compared whether keys and places are compared
     ///
-    /// \throw GridError on all ranks where one key is at two places
-    void find(std::span<const Candidate> candidates, std::size_t most_sharers, bool places);
+    /// \throw GridError on all ranks where a node has two keys or two places
+    void find(std::span<const Candidate> candidates, std::size_t most_sharers, bool compared);
 
     Ranks& ranks() const { return *ranks_; }
     /// The state of the grid for which they were found.

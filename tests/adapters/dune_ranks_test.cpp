@@ -5,7 +5,9 @@
 // before they are balanced. The pieces of all ranks, gathered, are the surface of one process. Run
 // under mpirun; prints what it compared with the hash of all on one process, and returns 1 where
 // something differs.
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -14,6 +16,7 @@
 #include <dune/grid/yaspgrid.hh>
 
 #include <nestgrid/adapters/mpi.hpp>
+#include <nestgrid/check_grid.hpp>
 
 #include "drawn_on_ranks.hpp"
 #include "dune_ug_grids.hpp"
@@ -123,6 +126,37 @@ unsigned long long leaves_of(const Solver& solver) {
     return solver.comm().sum(own);
 }
 
+/// How much is wrong with what processes claim to have: check_grid() finds nothing on any of them,
+/// and each coarse element is on one.
+/// \param coarse how many there are on all processes
+template <class Solver>
+int wrong_claims(const Solver& solver, std::size_t coarse, Ranks& ranks) {
+    const DuneGrid mine(solver);
+    const std::vector<double> values = sphere_at_vertices(solver, false);
+    const auto violation = check_grid(mine, DuneVertexField(mine, values));
+    if (violation) std::printf("rank %d: %s\n", ranks.rank(), violation->sentence.c_str());
+    Ranks::Bytes own;
+    for (std::size_t i = 0; i < mine.coarse_count(); ++i) {
+        if (mine.presence(mine.coarse(i).element) == Presence::elsewhere) continue;
+        const std::uint64_t place = mine.coarse_place(i);
+        const auto* const bytes = reinterpret_cast<const std::byte*>(&place);
+        own.insert(own.end(), bytes, bytes + sizeof place);
+    }
+    std::vector<std::uint64_t> places;
+    for (const Ranks::Bytes& claims : ranks.gather(std::move(own))) {
+        for (std::size_t at = 0; at < claims.size(); at += sizeof(std::uint64_t)) {
+            std::memcpy(&places.emplace_back(), claims.data() + at, sizeof(std::uint64_t));
+        }
+    }
+    std::sort(places.begin(), places.end());
+    const bool twice = std::adjacent_find(places.begin(), places.end()) != places.end();
+    if (twice || places.size() != coarse) {
+        std::printf("%zu claims of %zu coarse elements%s\n", places.size(), coarse,
+                    twice ? ", some by two processes" : "");
+    }
+    return (violation ? 1 : 0) + (twice || places.size() != coarse ? 1 : 0);
+}
+
 template <class Coordinates>
 int compare_structured(const char* name, Ranks& ranks) {
     int wrong = 0;
@@ -132,6 +166,8 @@ int compare_structured(const char* name, Ranks& ranks) {
         const auto leaves = leaves_of(*parts.solver);
         const auto found = draw_on_ranks(*parts.solver, noise, ranks);
         if (!noise) wrong += compare_functions(*parts.solver, ranks);
+        wrong +=
+            wrong_claims(*parts.solver, Coordinates::dimension == 2 ? 20 * 18 : 20 * 6 * 6, ranks);
         if (ranks.rank() == 0) {
             const Structured<Coordinates> whole(MPI_COMM_SELF, 1, true);
             wrong += count_different(std::string("YaspGrid, ") + name + ", overlap " +
@@ -173,7 +209,9 @@ int compare_unstructured(const char* name, const Make& make, Ranks& ranks) {
         auto expected = draw_alone(*solver, noise);
         sleep_until_all();
         const auto on_one = noise ? expected : draw_on_ranks(*solver, noise, ranks);
+        const auto coarse = solver->comm().sum(static_cast<std::size_t>(solver->size(0, 0)));
         solver->loadBalance();
+        wrong += wrong_claims(*solver, coarse, ranks);
         const auto found = draw_on_ranks(*solver, noise, ranks);
         if (ranks.rank() == 0) {
             const std::string what = std::string("UG, ") + name + (noise ? ", noise" : "");

@@ -4,9 +4,11 @@
 // Surfaces of deal.II's FE_Q(2), (4) and (6) on a locally refined mesh, within four tolerances
 // each, beside those that VTK draws of DataOut's subdivided cells. The error of both is measured,
 // as the greatest |U - isovalue| at six points of triangles. One process, one thread, processor
-// time. One "name value" line per figure; --quick takes a small mesh, --curved draws bent cells
-// beside straight ones and nothing else.
+// time; bytes of the heap. Once per solution, two threads are timed beside one by the clock. One
+// "name value" line per figure; --quick takes a small mesh, --curved draws bent cells beside
+// straight ones and nothing else.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -37,6 +39,9 @@
 #include <nestgrid/algorithms/isosurface.hpp>
 #include <nestgrid/algorithms/surface_report.hpp>
 
+#include "counted_heap.hpp"
+#include "thread_executor.hpp"
+
 namespace {
 
 using namespace nestgrid;
@@ -61,6 +66,12 @@ public:
 /// Reads the leaves that the level set passes through, as front ends do.
 VirtualRefinement looking_at_level_set(const HighOrder& data, double tolerance) {
     return {data, {.tolerance = tolerance, .values = {{{isovalue, isovalue}}}}};
+}
+
+/// Makes the next drawing read polynomials anew.
+void forget(const HighOrder& data) {
+    const double above = std::numeric_limits<double>::max();
+    (void)VirtualRefinement(data, {.tolerance = 1, .values = {{{above, above}}}});
 }
 
 /// An interpolated function on cells that are smaller around a sphere.
@@ -139,6 +150,7 @@ struct Drawing {
     double through_file;  // seconds
     double in_memory;
     double contour_alone;
+    double grid_bytes;  // of the cells that VTK contours
 };
 
 /// The cells of DataOut, divided n times along each direction, and VTK's contour of them.
@@ -160,6 +172,8 @@ Drawing subdivided(const Problem& problem, unsigned n, const std::string& name) 
     reader->Update();
     reader->GetOutput()->GetPointData()->SetActiveScalars("u");
     const double read = seconds();
+    const double grid_bytes =
+        1024.0 * static_cast<double>(reader->GetOutput()->GetActualMemorySize());
     vtkNew<vtkContourFilter> contour;
     contour->SetInputData(reader->GetOutput());
     contour->SetValue(0, isovalue);
@@ -182,11 +196,12 @@ Drawing subdivided(const Problem& problem, unsigned n, const std::string& name) 
     print(name + "_measured", error);
     print(name + "_open_edges_with_boundary",
           static_cast<double>(edges->GetOutput()->GetNumberOfCells()));
-    const Drawing made{static_cast<double>(count), error, drawn - begin,
-                       built - begin + drawn - read, drawn - read};
+    const Drawing made{static_cast<double>(count),   error,        drawn - begin,
+                       built - begin + drawn - read, drawn - read, grid_bytes};
     print(name + "_seconds_through_file", made.through_file);
     print(name + "_seconds_in_memory", made.in_memory);
     print(name + "_seconds_contour_alone", made.contour_alone);
+    print(name + "_grid_bytes", made.grid_bytes);
     return made;
 }
 
@@ -199,6 +214,19 @@ double needed_at(const std::vector<Drawing>& drawings, double error, double Draw
     const Drawing& b = drawings[i];
     const double t = std::log(error / a.error) / std::log(b.error / a.error);
     return a.*what * std::pow(b.*what / a.*what, t);
+}
+
+/// How many times as fast two threads are once per solution, by the clock.
+double speed_of_two(const DealiiGrid<3>& grid, const DealiiField<3, DoubleVector>& field) {
+    std::array<double, 2> took{};
+    for (const std::size_t threads : {1, 2}) {
+        const nestgrid_test::ThreadExecutor executor(threads);
+        const auto begin = std::chrono::steady_clock::now();
+        const HighOrder data(grid, field, executor);
+        const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+        took[threads - 1] = passed.count();
+    }
+    return took[0] / took[1];
 }
 
 double run(unsigned degree, bool quick) {
@@ -218,17 +246,30 @@ double run(unsigned degree, bool quick) {
     print(name + "_once_seconds", once);
     print(name + "_once_bytes_a_cell",
           static_cast<double>(data.memory_bytes()) / problem.triangulation.n_active_cells());
+    print(name + "_once_two_threads", speed_of_two(grid, field));
     double ratios = 0;
     int count = 0;
     for (const double tolerance : {0.1, 0.03, 0.01, 0.003}) {
         const std::string at = name + "_tolerance_" + std::to_string(++count);
+        const auto draw = [&](const VirtualRefinement& fine) {
+            return isosurface<3>(fine, isovalue, under(fine.criterion(), fine.bounds()));
+        };
+        // Polynomials and records, which are kept, the walk, and the surface.
+        forget(data);
+        const std::size_t before = data.memory_bytes();
+        const std::size_t bytes =
+            peak_heap_bytes([&] { (void)draw(looking_at_level_set(data, tolerance)); });
+        const std::size_t kept = data.memory_bytes() - before;
+        const std::size_t next_bytes =
+            peak_heap_bytes([&] { (void)draw(looking_at_level_set(data, tolerance)); });
+        forget(data);
         const double start = seconds();
         const VirtualRefinement fine = looking_at_level_set(data, tolerance);
-        const auto result = isosurface<3>(fine, isovalue, under(fine.criterion(), fine.bounds()));
+        const auto result = draw(fine);
         const double first = seconds() - start;
         print(at + "_seconds", first);
         const double again = seconds();
-        (void)isosurface<3>(fine, isovalue, under(fine.criterion(), fine.bounds()));
+        (void)draw(fine);
         const double next = seconds() - again;
         print(at + "_next_seconds", next);
         const auto& surface = result.surface;
@@ -245,6 +286,12 @@ double run(unsigned degree, bool quick) {
               needed_at(uniform, error, &Drawing::through_file) / (once + first));
         print(at + "_memory_of_first",
               needed_at(uniform, error, &Drawing::in_memory) / (once + first));
+        const double grid_bytes = needed_at(uniform, error, &Drawing::grid_bytes);
+        print(at + "_bytes", static_cast<double>(bytes));
+        print(at + "_kept_bytes", static_cast<double>(kept));
+        print(at + "_next_bytes", static_cast<double>(next_bytes));
+        print(at + "_bytes_of_grid", static_cast<double>(bytes) / grid_bytes);
+        print(at + "_kept_bytes_of_grid", static_cast<double>(kept) / grid_bytes);
         print(at + "_contour_of_next", needed_at(uniform, error, &Drawing::contour_alone) / next);
         print(at + "_of_uniform", ratio);
         ratios += std::log(ratio);

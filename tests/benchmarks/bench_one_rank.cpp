@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A surface drawn as programs on many ranks draw it, on one, and as programs without ranks do:
-// bench_one_rank.py runs both under callgrind, and compares the instructions of each step.
+// count_instructions.py runs both under callgrind, and compares the instructions of each step.
 //     bench_one_rank alone|ranks [leaves]
 #include <cstdio>
 #include <cstdlib>

@@ -245,7 +245,7 @@ TEST(DistributedFaults, OneRankCancels) {
 
 TEST(DistributedFaults, OwnKeysAreNotGlobal) {
     expect_all_say("keys", {.moves_keys = true},
-                   {"ranks ", "have a node at two places under one key"});
+                   {"ranks ", "have a node under two keys"});
 }
 
 /// A leaf that no rank has would be a hole, and one that two have would be drawn twice.

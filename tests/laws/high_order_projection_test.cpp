@@ -1,55 +1,25 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Data of higher degree within a number of triangles, in a lens, in a region, between frames,
-// collapsed, coloured, measured, and within an error of positions.
+// Data of higher degree within a number of triangles, in a lens, in a region, between frames, and
+// within an error of positions.
 #include <gtest/gtest.h>
 
 #include <nestgrid/algorithms/detail/round_up.hpp>
 #include <nestgrid/algorithms/drawing.hpp>
 #include <nestgrid/algorithms/frames.hpp>
-#include <nestgrid/algorithms/measured_error.hpp>
 #include <nestgrid/algorithms/polynomial_values.hpp>
 
 #include "curved_world.hpp"
-#include "degree_world.hpp"
 #include "high_order_judge.hpp"
+#include "high_order_worlds.hpp"
 #include "refusal.hpp"
 #include "same_surface.hpp"
-#include "shape_world.hpp"
 
 using namespace nestgrid_test;
 using namespace nestgrid;
 
 namespace {
-
-template <int dim>
-using OnBoxes = DrawnWorld<DegreeWorld<dim>, DegreeField<dim>>;
-template <int dim>
-using OnShapes = DrawnWorld<ShapeWorld<dim>, ShapeField<dim>>;
-
-WorldOptions hanging_world(unsigned seed) {
-    return {.levels = 2,
-            .least_degree = 2,
-            .greatest_degree = 5,
-            .noise = seed % 3 == 0 ? 0.1 : 0.0,
-            .seed = seed};
-}
-
-/// Calls function(drawn, seed) with worlds of all shapes in space.
-template <class Function>
-void for_each_world(unsigned count, const Function& function) {
-    for (unsigned seed = 1; seed <= count && !testing::Test::HasFailure(); ++seed) {
-        SCOPED_TRACE("seed " + std::to_string(seed));
-        const Function& of = function;
-        of(OnBoxes<3>(hanging_world(seed), functions[seed % functions.size()]), seed);
-        constexpr std::array shapes{Cells::simplices, Cells::prisms, Cells::columns, Cells::all,
-                                    Cells::pyramids};
-        of(OnShapes<3>(shapes[seed % shapes.size()], hanging_world(seed),
-                       functions[(seed + 1) % functions.size()]),
-           seed);
-    }
-}
 
 // Budgets.
 
@@ -342,108 +312,6 @@ TEST(HighOrderFrames, AtTheirTimesAreTheFramesThemselves) {
         return isosurface<3>(fine, 0.1, under(fine.criterion(), fine.bounds())).surface;
     };
     expect_same(draw(alone), draw(same));
-}
-
-// Fewer triangles, their colours, and what is measured of them.
-
-TEST(HighOrderCollapses, KeepTheErrorAndStayClosed) {
-    std::size_t drawn_triangles = 0;
-    std::size_t left = 0;
-    for_each_world(2, [&](const auto& drawn, unsigned) {
-        const Prerolls prerolls(drawn.world, drawn.field);
-        const double error = 0.2;
-        const Projection within{.threshold = error, .indicator = "error"};
-        Projection collapsing = within;
-        collapsing.collapse = true;
-        const auto result = isosurface<3>(prerolls, 0.1, collapsing);
-        ASSERT_TRUE(result.collapsed.has_value());
-        expect_closed(result.surface);
-        EXPECT_LE(measured(drawn.world, result.surface, 0.1),
-                  result.error_bound + std::ldexp(4.0, -20));
-        if (result.collapsed->exceeding == 0) {
-            EXPECT_LE(result.error_bound, (error + drawn.data.jump()) * (1 + 1e-6));
-        }
-        left += result.surface.simplices.size();
-        drawn_triangles += isosurface<3>(prerolls, 0.1, within).surface.simplices.size();
-    });
-    EXPECT_LT(left, drawn_triangles / 2);
-}
-
-/// The greatest difference of the colours of a surface from the data, at 15 points of triangles.
-template <class World>
-double colours_off(const World& world, const Surface<3>& surface) {
-    double greatest = 0;
-    for (const auto& t : surface.simplices) {
-        for (int a = 0; a <= 4; ++a) {
-            for (int b = 0; a + b <= 4; ++b) {
-                const std::array<double, 3> weight{a / 4.0, b / 4.0, 1 - (a + b) / 4.0};
-                Point x{0, 0, 0};
-                double colour = 0;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    x = x + weight[k] * surface.vertices[t[k]];
-                    colour += weight[k] * surface.attributes[t[k]];
-                }
-                greatest = std::max(greatest, std::abs(world(x) - colour));
-            }
-        }
-    }
-    return greatest;
-}
-
-TEST(HighOrderColours, FollowThePolynomials) {
-    const OnBoxes<3> boxes(WorldOptions{.least_degree = 3, .greatest_degree = 3}, gyroid);
-    const Prerolls prerolls(boxes.world, boxes.field);
-    const Plane plane({0.1, 0.02, 0.3}, {1, 2, 3});
-    Projection within{.threshold = 1, .indicator = "error"};
-    const auto coarse = slice(prerolls, plane, within);
-    EXPECT_GT(colours_off(boxes.world, coarse.surface), 0.05);
-    within.colour_tolerance = 0.05;
-    const auto fine = slice(prerolls, plane, within);
-    expect_closed(fine.surface);
-    EXPECT_LE(colours_off(boxes.world, fine.surface), 0.05);
-    // Edges are collapsed while colours keep the error.
-    const auto fewer =
-        slice(prerolls, plane, {.threshold = 0.2, .indicator = "error", .collapse = true});
-    expect_closed(fewer.surface);
-    EXPECT_LE(colours_off(boxes.world, fewer.surface), fewer.error_bound);
-    EXPECT_LE(fewer.error_bound, (0.2 + boxes.data.jump()) * (1 + 1e-6));
-    const auto whole = slice(prerolls, plane, {.threshold = 0.2, .indicator = "error"});
-    EXPECT_LT(fewer.surface.simplices.size(), whole.surface.simplices.size());
-}
-
-TEST(HighOrderMeasures, AreOfThePolynomials) {
-    const OnBoxes<3> boxes(WorldOptions{.levels = 1, .least_degree = 2, .greatest_degree = 4},
-                           gyroid);
-    const Prerolls prerolls(boxes.world, boxes.field);
-    const auto drawn = isosurface<3>(prerolls, 0.1, {.threshold = 0.3, .indicator = "error"});
-    const MeasuredError error = measure_error(prerolls, drawn.surface, 0.1, 20000);
-    const double seen = measured(boxes.world, drawn.surface, 0.1);
-    EXPECT_LE(error.value.greatest, drawn.error_bound + std::ldexp(4.0, -20));
-    EXPECT_GT(error.value.greatest, 0.5 * seen);
-    EXPECT_GT(error.value.mean, 0);
-    EXPECT_LT(error.distance.greatest, 0.2);
-    EXPECT_LT(error.back.greatest, 0.2);
-}
-
-TEST(HighOrderCollapses, RefuseWhatTheyDoNot) {
-    const OnBoxes<3> boxes(hanging_world(1), waves);
-    const Prerolls prerolls(boxes.world, boxes.field);
-    const auto draw = [&](Projection how) {
-        how.indicator = "error";
-        how.collapse = true;
-        (void)isosurface<3>(prerolls, 0.1, how);
-    };
-    expect_refused([&] { draw({.max_triangles = 1000}); }, "by no number of triangles");
-    expect_refused([&] { draw({.threshold = 1e-12}); }, "within an error of at least");
-    const DrawnWorld<CurvedWorld<DegreeWorld<3>>, DegreeField<3>> bent(
-        polynomial_bend(2, 0.1, 3), WorldOptions{.least_degree = 2}, square<3>);
-    const Prerolls curved(bent.world, bent.field);
-    expect_refused(
-        [&] {
-            (void)isosurface<3>(curved, 0.5,
-                                {.threshold = 0.1, .indicator = "error", .collapse = true});
-        },
-        "of curved cells are not collapsed");
 }
 
 // Positions of curved leaves.
