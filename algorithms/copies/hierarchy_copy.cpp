@@ -194,13 +194,7 @@ private:
         const auto corners = static_cast<std::size_t>(rule.corner_count());
         const std::size_t count = rule.new_nodes.size();
         frame.begin(corners + count, components_);
-        if (own_keys_) {
-            std::ranges::copy(family.new_keys(member), frame.key.data() + corners);
-        } else {
-            for (std::size_t n = 0; n < count; ++n) {
-                frame.key[corners + n] = derived_key(rule.new_nodes[n], frame.key.data());
-            }
-        }
+        put_new_keys(member, family, frame);
         Frame& below = at(depth + 1);
         const NodeMask constrained =
             of_->offers(Feature::constrained) ? member.constrained : NodeMask{0};
@@ -212,12 +206,26 @@ private:
         put_new_positions(member, asked, frame);
         for (std::size_t n = corners; n < corners + count; ++n) {
             frame.node[n] = number_of(frame.key[n]);
-            const bool hangs = (constrained >> (n - corners) & 1U) != 0;
-            if (hangs) interpolate(rule, n, frame);
-            if (!hangs) put_value(frame, n, (missing >> (n - corners) & 1U) != 0);
+            if ((constrained >> (n - corners) & 1U) != 0) {
+                interpolate(rule, n, frame);
+            } else {
+                put_value(frame, n, (missing >> (n - corners) & 1U) != 0);
+            }
             to_->position_[frame.node[n]] = frame.x[n];
         }
         return copy_children(member, constrained, depth);
+    }
+
+    void put_new_keys(const Member& member, const Family& family, Frame& frame) const {
+        const Rule& rule = *member.rule;
+        NodeKey* const made = frame.key.data() + rule.corner_count();
+        if (own_keys_) {
+            std::ranges::copy(family.new_keys(member), made);
+            return;
+        }
+        for (std::size_t n = 0; n < rule.new_nodes.size(); ++n) {
+            made[n] = derived_key(rule.new_nodes[n], frame.key.data());
+        }
     }
 
     void require_linear(const Handle& leaf) {

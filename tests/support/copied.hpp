@@ -15,6 +15,8 @@
 
 namespace nestgrid_test {
 
+using namespace nestgrid;
+
 /// Surfaces, capped and not, slices and shadings of both are the same to the last bit, and so are
 /// bounds; counts, too, but where the original is walked in patches or prepared by rows. So are
 /// numbers of vertices where the original has dense keys, which are then those of the copy; and
@@ -27,8 +29,8 @@ void expect_copied(const Hierarchy<Real>& hierarchy, double isovalue,
         return;
     }
     const HierarchyCopy copy(hierarchy);
-    const Prerolls original{FieldOnGrid(hierarchy)};
-    const Prerolls copied{FieldOnGrid(copy)};
+    const Prerolls original(hierarchy);
+    const Prerolls copied(copy);
     const bool normals = dimension == 3 && !hierarchy.offers(Feature::gradients);
     const bool dense = hierarchy.facts().node_count > 0;
     const bool patches = hierarchy.facts().knows_patches;

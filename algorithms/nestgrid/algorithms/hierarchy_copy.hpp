@@ -27,10 +27,10 @@ struct CopiedElement {
     std::uint32_t number;  ///< among the children of its father, or among coarse elements
 };
 
-/// What a hierarchy says of its elements, nodes and values at the time of the copy; nothing is
-/// borrowed. It has own keys and positions, hidden elements and boundary faces as the original has.
-/// Elements that are drawn are CopiedElement, and normals are those of the values: gradients that
-/// the field gives are not copied.
+/// What a hierarchy says of its elements, nodes and values at the time of the copy; only the rules
+/// are borrowed. It has own keys and positions, hidden elements and boundary faces where the
+/// original has. Elements that are drawn are CopiedElement, and normals are those of the values:
+/// gradients that the field gives are not copied.
 /// \tparam Real float or double
 template <class Real>
 class HierarchyCopy final : public Hierarchy<Real> {
@@ -38,7 +38,7 @@ public:
     /// Walks all of it once.
     /// \throw InvalidInput where the hierarchy is distributed, has data or leaves of higher degree,
     ///        or nodes that hang on edges of other trees (hanging_parents)
-    /// \throw GridError where a value is missing, or there are 2^32 nodes or more
+    /// \throw GridError where there are 2^32 nodes or more, or records take 16 GB
     explicit HierarchyCopy(const Hierarchy<Real>& of);
 
     /// Of everything that is kept.

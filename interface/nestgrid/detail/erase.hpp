@@ -294,8 +294,6 @@ private:
     static constexpr bool has_star_rows_ = requires(const Grid& grid) {
         grid.for_each_star_row([](const StarRow&) {});
     };
-    static constexpr bool may_have_gradients_ =
-        offers_corner_gradients<Field, Context<Grid>, const Element&, std::span<Point>>;
     static constexpr bool may_have_degree_ =
         offers_degree<Field, Context<Grid>, const Element&> &&
         offers_evaluate<Field, Context<Grid>, const Element&, std::span<const Point>,
