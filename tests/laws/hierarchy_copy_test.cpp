@@ -46,6 +46,37 @@ TEST(HierarchyCopies, KnowWhatIsPadded) {
     expect_padded_copies(LatticeBisection<2>({.samples = {21, 18}}), 0.4);
 }
 
+/// A field that has no value at the first new node of any element.
+class IncompleteField {
+public:
+    using value_type = double;
+    using Grid = OctreeGrid<3>;
+
+    IncompleteField(const Grid& grid, const std::vector<double>& values) : values_(grid, values) {}
+
+    NodeMask coarse_values(std::size_t i, std::span<double> out) const {
+        return values_.coarse_values(i, out);
+    }
+    NodeMask new_values(const Grid::Element& e, NodeMask which, std::span<double> out,
+                        Grid::Context& context) const {
+        return values_.new_values(e, which, out, context) | (which & 1U);
+    }
+
+private:
+    NodeField<Grid, double> values_;
+};
+
+TEST(HierarchyCopies, MissTheSameValues) {
+    OctreeGrid<3> grid(hexahedra(1));
+    refine_at_sphere(grid, 2);
+    const std::vector<double> values(grid.node_count(), 1.0);
+    const IncompleteField field(grid, values);
+    const auto hierarchy = erase(grid, field);
+    const HierarchyCopy copy(hierarchy);
+    EXPECT_THROW(isosurface<3>(Prerolls(hierarchy), 0.5), GridError);
+    EXPECT_THROW(isosurface<3>(Prerolls(copy), 0.5), GridError);
+}
+
 TEST(HierarchyCopies, TakeTheMemoryThatTheyTell) {
     OctreeGrid<3> grid(hexahedra(1));
     refine_at_sphere(grid, 5);
