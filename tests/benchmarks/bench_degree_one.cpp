@@ -6,27 +6,18 @@
 // instructions of each step. They draw the same bits.
 //     bench_degree_one nodal|degrees [leaves]
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 
 #include <nestgrid/algorithms/drawing.hpp>
 
-#include "cut_grid.hpp"
-#include "sample_grids.hpp"
+#include "counted_steps.hpp"
 
 using namespace nestgrid_test;
 
-// What callgrind counts: a function with this name around each step.
-#define STEP(name)                                                                          \
-    extern "C" __attribute__((noinline)) void name(const std::function<void()>& function) { \
-        function();                                                                         \
-        asm volatile("");                                                                   \
-    }
-STEP(step_first_surface)
-STEP(step_next_surface)
-STEP(step_coarse_surface)
-#undef STEP
+NESTGRID_COUNTED_STEP(step_first_surface)
+NESTGRID_COUNTED_STEP(step_next_surface)
+NESTGRID_COUNTED_STEP(step_coarse_surface)
 
 namespace {
 
@@ -83,18 +74,8 @@ void draw(const CutGrid<3>& grid, const Field& field) {
 
 int main(int argc, char** argv) {
     const bool degrees = argc > 1 && std::string(argv[1]) == "degrees";
-    const std::size_t leaves = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 60000;
-    auto made = BalancedOctree::grids()[0];
-    while (made.leaf_count() < leaves) {
-        made.adapt(
-            [](const Leaf& leaf) { return near_sphere(leaf, 3, 1.2) ? Mark::refine : Mark::keep; });
-    }
-    const Whole whole(made);
-    std::vector<double> values;
-    for (const Point& x : whole.positions) {
-        values.push_back(to_sphere(x, 3) + 0.05 * std::sin(20 * x[0]));
-        values.push_back(0);
-    }
+    const CountedWorld world(argc > 2 ? argv[2] : nullptr);
+    const auto& [whole, values] = world;
     const CutGrid<3> grid(whole, nullptr, false);
     if (degrees) {
         draw(grid, FieldOfDegreeOne{{&grid, &values}});

@@ -5,31 +5,22 @@
 // count_instructions.py runs both under callgrind, and compares the instructions of each step.
 //     bench_one_rank alone|ranks [leaves]
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <string>
 
 #include <nestgrid/algorithms/distributed.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 
-#include "cut_grid.hpp"
-#include "sample_grids.hpp"
+#include "counted_steps.hpp"
 #include "simulated_ranks.hpp"
 
 using namespace nestgrid_test;
 
-// What callgrind counts: a function with this name around each step.
-#define STEP(name)                                                                          \
-    extern "C" __attribute__((noinline)) void name(const std::function<void()>& function) { \
-        function();                                                                         \
-        asm volatile("");                                                                   \
-    }
-STEP(step_grid)
-STEP(step_field)
-STEP(step_preroll)
-STEP(step_surface)
-STEP(step_coarse_surface)
-#undef STEP
+NESTGRID_COUNTED_STEP(step_grid)
+NESTGRID_COUNTED_STEP(step_field)
+NESTGRID_COUNTED_STEP(step_preroll)
+NESTGRID_COUNTED_STEP(step_surface)
+NESTGRID_COUNTED_STEP(step_coarse_surface)
 
 namespace {
 
@@ -51,18 +42,8 @@ void draw(const Grid& grid, const Field& field) {
 
 int main(int argc, char** argv) {
     const bool on_ranks = argc > 1 && std::string(argv[1]) == "ranks";
-    const std::size_t leaves = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 60000;
-    auto made = BalancedOctree::grids()[0];
-    while (made.leaf_count() < leaves) {
-        made.adapt(
-            [](const Leaf& leaf) { return near_sphere(leaf, 3, 1.2) ? Mark::refine : Mark::keep; });
-    }
-    const Whole whole(made);
-    std::vector<double> values;
-    for (const Point& x : whole.positions) {
-        values.push_back(to_sphere(x, 3) + 0.05 * std::sin(20 * x[0]));
-        values.push_back(0);
-    }
+    const CountedWorld world(argc > 2 ? argv[2] : nullptr);
+    const auto& [whole, values] = world;
     const Part part(whole, std::vector<int>(whole.leaves, 0), 0);
     const CutGrid<3> grid(whole, on_ranks ? &part : nullptr, false);
     const CutField<3, double> field{&grid, &values};
