@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <height_fields/element_sides.hpp>
 
-#include <limits>
 #include <utility>
 
 namespace nestgrid::engine {
@@ -15,16 +14,11 @@ void ElementSides<Real>::load(const View& view) {
 
 template <class Real>
 ElementSide ElementSides<Real>::side(std::size_t edge) const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto [a, b] = view_->topology().edge[edge];
-    const MaximalEdge<Real>* const maximal = view_->closed.edge(edge);
-    if (maximal == nullptr) {
-        const double end = key_[a] < key_[b] ? infinity : -infinity;
-        return {{a, b}, {key_[a], key_[b]}, {-end, end}};
-    }
-    const KeyPair around(maximal->key(0), maximal->key(1));
-    auto [from, to] = walk_->positions(*maximal);
-    if (maximal->key(0) != around.low) std::swap(from, to);
+    const MaximalEdge<Real>& maximal = *view_->closed.edge(edge);
+    const KeyPair around(maximal.key(0), maximal.key(1));
+    auto [from, to] = walk_->positions(maximal);
+    if (maximal.key(0) != around.low) std::swap(from, to);
     return {{a, b}, around, {dot(x_[a] - from, to - from), dot(x_[b] - from, to - from)}};
 }
 

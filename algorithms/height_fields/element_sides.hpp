@@ -17,7 +17,7 @@ namespace nestgrid::engine {
 struct ElementSide {
     std::array<std::size_t, 2> corner;
     KeyPair around;               ///< the ends of the maximal edge
-    std::array<double, 2> place;  ///< of the two corners on it; infinite where they are its ends
+    std::array<double, 2> place;  ///< of the two corners on it
 
     /// Whether places rise from the first corner to the second.
     bool rises() const { return place[0] < place[1]; }
@@ -45,6 +45,7 @@ public:
         for (std::size_t c = 0; c < components_; ++c) values_[c] = u(corner, c);
         return values_;
     }
+    /// An edge that is a part of a larger one.
     ElementSide side(std::size_t edge) const;
     /// The edges on the boundary of the domain, as a mask.
     unsigned boundary() const { return walk_->boundary(*view_); }
