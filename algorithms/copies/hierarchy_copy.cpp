@@ -84,7 +84,7 @@ public:
           own_keys_{of.offers(Feature::own_keys)},
           own_positions_{of.offers(Feature::own_positions)},
           new_positions_{of.offers(Feature::new_positions)},
-          marks_{of.offers(Feature::hidden) || of.offers(Feature::boundary_faces)} {
+          marks_{to.has_marks()} {
         if (of.facts().node_count > 0) to_node(of.facts().node_count - 1);
     }
 
@@ -282,19 +282,18 @@ private:
                      frame.node.begin() + static_cast<std::ptrdiff_t>(nodes));
         const std::size_t first_child = words.size();
         words.resize(first_child + (marks_ ? 2 : 1) * children, 0);
+        const NodeMask there = below.family.split | below.family.leaves;
         for (std::size_t c = 0; c < children; ++c) {
-            const bool is_there = ((below.family.split | below.family.leaves) >> c & 1U) != 0;
-            std::uint32_t child = no_element;
-            if (is_there) {
-                const Member& of = below.family.members[c];
-                take_corners(rule.children[c], of, frame, below);
-                if (marks_) {
-                    words[first_child + children + c] =
-                        marks_of(of, topology(rule.children[c].shape).corners);
-                }
-                child = copy(of, below.family, depth + 1);
+            words[first_child + c] = no_element;
+            if ((there >> c & 1U) == 0) continue;
+            const Member& of = below.family.members[c];
+            take_corners(rule.children[c], of, frame, below);
+            if (marks_) {
+                words[first_child + children + c] =
+                    marks_of(of, topology(rule.children[c].shape).corners);
             }
-            words[first_child + c] = child;
+            const std::uint32_t child = copy(of, below.family, depth + 1);
+            words[first_child + c] = child;  // only now, because memory may have moved
         }
         return record;
     }
@@ -425,7 +424,7 @@ NodeMask HierarchyCopy<Real>::enter(Task* task, const Handle& element, const Rul
     const std::size_t children = rule.children.size();
     const std::uint32_t* const child =
         nodes_of(e.own) + static_cast<std::size_t>(rule.corner_count()) + rule.new_nodes.size();
-    const bool marks = this->offers(Feature::hidden) || this->offers(Feature::boundary_faces);
+    const bool marks = has_marks();
     family.begin(children);
     for (std::size_t c = 0; c < children; ++c) {
         if ((wanted >> c & 1U) == 0 || child[c] == no_element) continue;

@@ -73,6 +73,9 @@ private:
     void describe(const CopiedElement& element, std::uint32_t marks, std::size_t c,
                   Family& family) const;
     NodeMask values_at(const std::uint32_t* nodes, NodeMask which, Real* out) const;
+    bool has_marks() const {
+        return this->offers(Feature::hidden) || this->offers(Feature::boundary_faces);
+    }
     const Rule& rule_of(std::uint32_t record) const { return *rules_[words_[record]]; }
     const std::uint32_t* nodes_of(std::uint32_t record) const;
 
