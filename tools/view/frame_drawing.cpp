@@ -176,10 +176,10 @@ FramePart FrameDrawing::draw_band(const Hierarchy<Real>& hierarchy, const Stoppe
 
 /// Where edges are cut, what is kept, and whether normals are those of gradients.
 IsosurfaceOptions FrameDrawing::surface_options() const {
-    const bool quickly = request_.moving || request_.collapses();
     IsosurfaceOptions options = watched(
         {.cap = request_.cap, .elements = request_.outlines, .at_nodes = request_.at_nodes});
-    options.normals = request_.normals != NormalType::none && !quickly && !request_.cap;
+    options.normals =
+        request_.normals != NormalType::none && !request_.draws_quickly() && !request_.cap;
     // Linear cuts keep an error.
     const bool keeps =
         request_.error > 0 || request_.indicator == "deviation" || criteria_.polynomials != nullptr;
@@ -189,7 +189,7 @@ IsosurfaceOptions FrameDrawing::surface_options() const {
 
 /// Normals from triangles, where those of gradients were not asked for.
 void FrameDrawing::add_normals(FramePart& part) const {
-    const bool quickly = request_.moving || request_.collapses();
+    const bool quickly = request_.draws_quickly();
     if (request_.normals == NormalType::none || !quickly || request_.cap) return;
     Surface<3>& surface = part.drawn.surface;
     surface.normals = normals_from_triangles(surface);

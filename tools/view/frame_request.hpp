@@ -81,6 +81,8 @@ struct FrameRequest {
     }
     /// Edges are collapsed when nothing moves.
     bool collapses() const { return collapse && !moving; }
+    /// Normals of isosurfaces are those of triangles.
+    bool draws_quickly() const { return moving || collapses(); }
     /// Nor is a distance kept before.
     bool keeps_distance() const { return distance_field && !moving; }
 };
