@@ -7,8 +7,8 @@
  *
  * Of the options `threshold` and `error` say the same: elements stop where component 0 deviates by
  * this at most from the data of all leaves below them. `max_triangles` finds the least of them.
- * `threads`, `progress`, `elements` and `reference` are as for other surfaces, the rest is refused.
- * All threads ask for values of leaves. Codes, messages and results are as in isosurface.h.
+ * `threads`, `progress` and `elements` are as for other surfaces, the rest is refused. All threads
+ * ask for values of leaves. Codes, messages and results are as in isosurface.h.
  */
 #ifndef NESTGRID_ALGORITHMS_DISCONTINUOUS_H
 #define NESTGRID_ALGORITHMS_DISCONTINUOUS_H
