@@ -34,7 +34,7 @@ void EdgeNodes::append(const EdgeNodes& task) {
 void EdgeNodes::exchange(const SharedNodes& shared) {
     Outbox box(shared.ranks().size());
     for (const EdgeNode& node : nodes_) {
-        shared.route(std::array{node.edge.low, node.edge.high}, box, [&](Bytes& out) {
+        shared.route(std::array{node.edge.low, node.edge.high}, box, [&](Bytes& out, int) {
             put(out, node);
             for (const double value : values(node)) put(out, value);
         });

@@ -68,9 +68,10 @@ public:
         if (shared_ == nullptr) return;
         Outbox box(shared_->ranks().size());
         for (const Found& each : found) {
-            auto to = std::lower_bound(told_.begin(), told_.end(), std::pair(each.node, all_));
+            auto to = std::lower_bound(told_.begin(), told_.end(),
+                                       std::pair(each.node, SharedNodes::all_ranks));
             for (; to != told_.end() && to->first == each.node; ++to) {
-                put(to->second == all_ ? box.to_all() : box.to(to->second), each);
+                put(to->second == SharedNodes::all_ranks ? box.to_all() : box.to(to->second), each);
             }
         }
         shared_->send(box, [&](int, Reader& in) {
@@ -93,18 +94,15 @@ public:
     }
 
 private:
-    static constexpr int all_ = -1;
-
     void write(const Cell& cell, std::uint32_t number, Outbox& box) {
         std::vector<int> to;
         for (const NodeKey key : cell.keys) {
-            shared_->route(std::span(&key, 1), box, [&](Bytes& out) {
-                const int rank = &out == &box.to_all() ? all_ : static_cast<int>(&out - &box.to(0));
+            shared_->route(std::span(&key, 1), box, [&](Bytes&, int rank) {
                 if (std::find(to.begin(), to.end(), rank) == to.end()) to.push_back(rank);
             });
         }
         for (const int rank : to) {
-            Bytes& out = rank == all_ ? box.to_all() : box.to(rank);
+            Bytes& out = rank == SharedNodes::all_ranks ? box.to_all() : box.to(rank);
             put(out, number);
             put(out, cell.shape);
             put(out, cell.value);

@@ -28,10 +28,10 @@ public:
 
     void run() {
         for (const Segment& segment : record_->segments_) {
-            tell(segment.face, [&](Bytes& out) { write(out, segment); });
+            tell(segment.face, [&](Bytes& out, int) { write(out, segment); });
         }
         record_->split_of_.for_each([&](NodeKey face, const Split& split) {
-            tell(face, [&](Bytes& out) { write(out, face, split); });
+            tell(face, [&](Bytes& out, int) { write(out, face, split); });
         });
         record_->shared_->send(box_, [&](int rank, Reader& in) { read(rank, in); });
         leave_gaps_to_others();
@@ -40,7 +40,7 @@ public:
 private:
     enum class Kind : std::uint8_t { cut, segment, split };
 
-    /// Calls write(bytes) for the ranks that may have a face or an edge.
+    /// Calls write(bytes, rank) for the ranks that may have a face or an edge.
     template <class Write>
     void tell(NodeKey part, const Write& write) {
         const Corners* const corners = record_->shared_parts_.find(part);

@@ -46,9 +46,11 @@ bool may_differ(const Hierarchy<float>& grid) {
     return grid.offers(Feature::own_keys) || grid.offers(Feature::new_positions);
 }
 
-/// Finds the nodes that other ranks may have. Those of elements that are here in part; and below an
-/// element that is here wholly the ones on its boundary, as all leaves around others are below it,
-/// too. Where ranks list different coarse elements, all nodes that this rank has.
+/// Finds the nodes that other ranks may have: those of elements that are here in part, and those of
+/// faces of leaves beside which no leaf here has the same face. Around any other node each leaf is
+/// here: going from face to face there one meets the first leaf that is not across such a face,
+/// which has the node. In planes, which may meet in an edge by more than two, the nodes on the
+/// boundary of each greatest element that is here wholly.
 class NodeSearch {
 public:
     /// \param same_coarse whether all ranks list the same coarse elements
@@ -57,15 +59,16 @@ public:
           named_{grid.offers(Feature::own_keys) && same_coarse},
           places_{grid.offers(Feature::new_positions) ||
                   (grid.offers(Feature::own_keys) && !named_)},
-          on_boundary_{same_coarse},
+          dimension_{grid.facts().dimension},
           task_{grid.open()},
           walk_(grid, {.values = false, .keys = true, .positions = places_, .on_ranks = true}) {}
 
     std::vector<SharedNodes::Candidate> run() {
         if (has_all_leaves(*grid_)) return {};
-        for_each_element(walk_, true, [&](const ElementView<float>& view, const Split& split) {
-            look_at(view, split);
-        });
+        for_each_element(
+            walk_, dimension_ < 3,
+            [&](const ElementView<float>& view, const Split& split) { look_at(view, split); });
+        keep_beside_others();
         return std::move(nodes_);
     }
 
@@ -76,24 +79,71 @@ private:
         /// As derived from ids of coarse elements, which all ranks list: the same on all.
         std::array<NodeKey, std::tuple_size_v<SplitKeys>> name;
     };
-    static constexpr std::uint8_t in_part = 0x80;  ///< of an element that is here in part
+    static constexpr std::uint8_t in_part = 0x80;    ///< of an element that is here in part
+    using FaceNodes = std::array<std::uint32_t, 4>;  ///< in order; triangles name one twice
 
     void look_at(const ElementView<float>& view, const Split& split) {
-        walk_.corners(view, keys_.data(), nullptr);
+        const bool is_leaf = split.rule == nullptr;
         const std::size_t corners = view.corner_count();
-        std::size_t count = corners;
-        if (split.rule != nullptr) count = walk_.split_keys(view, split, keys_).size();
+        const std::size_t count = corners + (is_leaf ? 0 : split.rule->new_nodes.size());
+        const Level& level = put_level(view, split, count);
+        if (!is_leaf || view.level == 0) put_nodes(view, split, level, count);
+        if (is_leaf && dimension_ == 3) put_faces(view, level);
+    }
+    /// Notes the nodes that others may have, if leaves around them are elsewhere.
+    void put_nodes(const ElementView<float>& view, const Split& split, const Level& level,
+                   std::size_t count) {
+        walk_.corners(view, keys_.data(), nullptr);
+        if (split.rule != nullptr) walk_.split_keys(view, split, keys_);
         if (places_ && split.rule == nullptr) walk_.corners(view, nullptr, positions_.data());
         if (places_ && split.rule != nullptr) {
             const auto of = walk_.split_positions(view, split, positions_);
             if (of.data() != positions_.data()) std::copy(of.begin(), of.end(), positions_.begin());
         }
-        const Level& level = put_level(view, split, count);
-        for (std::size_t n = view.level == 0 ? 0 : corners; n < count; ++n) {
-            if (level.on[n] == 0 || !seen_.insert(keys_[n], {}).second) continue;
-            nodes_.push_back({named_ ? level.name[n] : keys_[n], keys_[n],
-                              places_ ? hash_of(positions_[n]) : 0});
+        for (std::size_t n = view.level == 0 ? 0 : view.corner_count(); n < count; ++n) {
+            if (level.on[n] == 0) continue;
+            const auto number = static_cast<std::uint32_t>(nodes_.size());
+            const auto [known, is_new] = number_.insert(keys_[n], number);
+            if (is_new) {
+                nodes_.push_back({named_ ? level.name[n] : keys_[n], keys_[n],
+                                  places_ ? hash_of(positions_[n]) : 0});
+                others_may_have_.push_back(false);
+            }
+            if (level.on[n] == in_part || dimension_ < 3) others_may_have_[*known] = true;
         }
+    }
+    /// Notes the faces of a leaf on the boundary of the greatest element that is here wholly.
+    void put_faces(const ElementView<float>& leaf, const Level& level) {
+        const Topology& t = leaf.topology();
+        bool has_keys = false;
+        for (std::size_t f = 0; f < t.faces; ++f) {
+            unsigned on = 0xFF & ~unsigned{in_part};
+            for (int i = 0; i < t.face[f].corners; ++i) on &= level.on[t.face[f].corner[i]];
+            if (on == 0) continue;
+            if (!std::exchange(has_keys, true)) walk_.corners(leaf, keys_.data(), nullptr);
+            FaceNodes& nodes = faces_.emplace_back();
+            for (int i = 0; i < 4; ++i) {
+                const int corner = t.face[f].corner[std::min(i, t.face[f].corners - 1)];
+                nodes[static_cast<std::size_t>(i)] = *number_.find(keys_[corner]);
+            }
+            std::sort(nodes.begin(), nodes.end());
+        }
+    }
+    void keep_beside_others() {
+        std::sort(faces_.begin(), faces_.end());
+        for (auto at = faces_.begin(); at != faces_.end();) {
+            const auto end =
+                std::find_if(at, faces_.end(), [&](const auto& f) { return f != *at; });
+            if (end - at != 2) {
+                for (const std::uint32_t node : *at) others_may_have_[node] = true;
+            }
+            at = end;
+        }
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if (others_may_have_[i]) nodes_[kept++] = nodes_[i];
+        }
+        nodes_.resize(kept);
     }
     /// \param count of the nodes, corners first
     const Level& put_level(const ElementView<float>& view, const Split& split, std::size_t count) {
@@ -101,7 +151,7 @@ private:
         if (levels_.size() < depth + 2) levels_.resize(depth + 2);
         Level& level = levels_[depth];
         const std::size_t corners = view.corner_count();
-        const bool whole = view.member->presence == Presence::here && on_boundary_;
+        const bool whole = view.member->presence == Presence::here;
         const bool begins =
             whole && (view.father == nullptr || view.father->member->presence != Presence::here);
         if (depth == 0 && named_) put_coarse_names(view, level);
@@ -140,16 +190,17 @@ private:
     }
 
     const Hierarchy<float>* grid_;
-    bool named_;        // own keys are compared under names
-    bool places_;       // places are compared
-    bool on_boundary_;  // else all nodes are looked for
+    bool named_;   // own keys are compared under names
+    bool places_;  // places are compared
+    int dimension_;
     std::unique_ptr<Task> task_;
     Family family_;
     Walk<float> walk_;
-    std::vector<Level> levels_;  // on the way down
-    struct Seen {};
-    KeyTable<NodeKey, Seen> seen_;
+    std::vector<Level> levels_;                // on the way down
+    KeyTable<NodeKey, std::uint32_t> number_;  // of nodes_
     std::vector<SharedNodes::Candidate> nodes_;
+    std::vector<bool> others_may_have_;  // of each
+    std::vector<FaceNodes> faces_;
     SplitKeys keys_{};
     SplitPositions positions_{};
 };

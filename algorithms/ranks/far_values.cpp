@@ -54,7 +54,7 @@ public:
                               [&](int rank, NodeKey node, Reader& in) {
                                   if (in.get<std::uint8_t>() != 0) take(rank, node, read(in), own);
                               });
-        if (!shared_->common().empty()) agree_on_common(own);
+        if (shared_->common_count() > 0) agree_on_common(own);
         refuse_differences();
     }
     void put_missed(FarValues& far) const {
@@ -110,9 +110,9 @@ private:
     }
     void agree_on_common(const SharedValues& own) {
         Bytes told;
-        const std::span<const NodeKey> common = shared_->common();
-        for (std::size_t i = 0; i < common.size(); ++i) {
-            const Known* const known = own.known_.find(common[i]);
+        for (std::size_t i = 0; i < shared_->common_count(); ++i) {
+            const NodeKey* const node = shared_->common(i);
+            const Known* const known = node == nullptr ? nullptr : own.known_.find(*node);
             if (known == nullptr || known->from == none_) continue;
             put(told, static_cast<std::uint32_t>(i));
             for (std::size_t c = 0; c < components_; ++c) put(told, own.of(*known)[c]);
@@ -121,8 +121,9 @@ private:
         for (int rank = 0; rank < shared_->ranks().size(); ++rank) {
             if (rank == shared_->ranks().rank()) continue;
             for (Reader in(all[static_cast<std::size_t>(rank)]); in.more();) {
-                const auto i = in.get<std::uint32_t>();
-                take(rank, common[i], read(in), own);
+                const NodeKey* const node = shared_->common(in.get<std::uint32_t>());
+                const std::vector<double> values = read(in);
+                if (node != nullptr) take(rank, *node, values, own);
             }
         }
     }

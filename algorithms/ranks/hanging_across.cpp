@@ -21,20 +21,30 @@ struct Part {
     std::uint8_t corners = 0;
     bool of_leaf = true;  ///< else an element divides it between the middles of 01 and 23 first
 
+    Part() = default;
     template <class Corners>
     Part(std::span<const NodeKey> keys, const Corners& of, std::size_t count, bool leaf)
         : corners{static_cast<std::uint8_t>(count)}, of_leaf{leaf} {
         for (std::size_t i = 0; i < count; ++i) key[i] = keys[of[i]];
     }
-    explicit Part(Reader& in) {
+    /// Reads what a rank wrote, with the numbers by which both call their nodes: none where this
+    /// rank has not got all of these.
+    static std::optional<Part> read(Reader& in, int rank, const SharedNodes& shared) {
+        Part part;
         const auto what = in.get<std::uint8_t>();
-        corners = what >> 1U;
-        of_leaf = (what & 1U) != 0;
-        for (std::size_t i = 0; i < corners; ++i) key[i] = in.get<NodeKey>();
+        part.corners = what >> 1U;
+        part.of_leaf = (what & 1U) != 0;
+        bool here = true;
+        for (std::size_t i = 0; i < part.corners; ++i) {
+            const NodeKey* const node = shared.node_with(rank, in.get<std::uint32_t>());
+            here = here && node != nullptr;
+            if (here) part.key[i] = *node;
+        }
+        return here ? std::optional(part) : std::nullopt;
     }
-    void put_into(Bytes& out) const {
+    void put_into(Bytes& out, int rank, const SharedNodes& shared) const {
         put(out, static_cast<std::uint8_t>(unsigned{corners} << 1U | unsigned{of_leaf}));
-        for (const NodeKey node : all()) put(out, node);
+        for (const NodeKey node : all()) put(out, shared.number_with(rank, node));
     }
     std::span<const NodeKey> all() const { return std::span(key).first(corners); }
 };
@@ -61,13 +71,15 @@ public:
         probe_.finish();
     }
     void exchange() {
-        shared_->send(box_, [&](int, Reader& in) {
-            while (in.more()) told_.emplace_back(in);
+        shared_->send(box_, [&](int rank, Reader& in) {
+            while (in.more()) {
+                if (const auto part = Part::read(in, rank, *shared_)) told_.push_back(*part);
+            }
         });
     }
     HangingNodes find() {
         for (const Part& part : told_) {
-            if (part.of_leaf) probe_.probe_part(part.all());
+            if (part.of_leaf) probe_leaf_part(part);
             if (!part.of_leaf && probe_.crosses(part.key)) refuse_crossed("elements of two ranks");
         }
         for_each_element(walk_, false, [&](const ElementView<float>& view, const Split& split) {
@@ -82,26 +94,63 @@ public:
     }
 
 private:
+    struct ToldFace {
+        int rank;
+        unsigned corners;  ///< of the leaf, one bit each
+    };
+
+    /// An edge, or a face with its edges.
+    void probe_leaf_part(const Part& part) {
+        const auto& k = part.key;
+        if (part.corners == 3) probe_edges(std::array{k[0], k[1], k[2]});
+        if (part.corners == 4) probe_edges(std::array{k[0], k[1], k[3], k[2]});
+        probe_.probe_part(part.all());
+    }
+    template <std::size_t corners>
+    void probe_edges(const std::array<NodeKey, corners>& loop) {
+        for (std::size_t i = 0; i < corners; ++i) {
+            probe_.probe_part(std::array{loop[i], loop[(i + 1) % corners]});
+        }
+    }
     using OneWayFaces = std::vector<nestgrid::detail::OneWayFace>;
     const OneWayFaces& faces_of(const Rule& rule) {
         const auto at = faces_.find(&rule);
         if (at != faces_.end()) return at->second;
         return faces_.emplace(&rule, nestgrid::detail::one_way_faces(rule, false)).first->second;
     }
+    /// Tells the faces of a leaf, and its edges to those who are not told a face around them.
     void tell_leaf(const ElementView<float>& leaf) {
         const Topology& t = leaf.topology();
         walk_.corners(leaf, keys_.data(), nullptr);
-        for (std::size_t e = 0; e < t.edges; ++e) tell({keys_, t.edge[e], 2, true});
+        told_faces_.clear();
         for (std::size_t f = 0; t.dimension == 3 && f < t.faces; ++f) {
             std::array<std::uint8_t, 4> corner{};
+            unsigned corners = 0;
             for (int i = 0; i < t.face[f].corners; ++i) {
                 corner[static_cast<std::size_t>(i)] = t.face[f].tensor_corner(i);
+                corners |= 1U << t.face[f].tensor_corner(i);
             }
-            tell({keys_, corner, t.face[f].corners, true});
+            const Part face(keys_, corner, t.face[f].corners, true);
+            shared_->route(face.all(), box_, [&](Bytes& out, int rank) {
+                told_faces_.push_back({rank, corners});
+                face.put_into(out, rank, *shared_);
+            });
+        }
+        for (std::size_t e = 0; e < t.edges; ++e) {
+            const unsigned ends = 1U << t.edge[e][0] | 1U << t.edge[e][1];
+            const Part edge(keys_, t.edge[e], 2, true);
+            shared_->route(edge.all(), box_, [&](Bytes& out, int rank) {
+                const auto knows = [&](const ToldFace& face) {
+                    return face.rank == rank && (ends & ~face.corners) == 0;
+                };
+                if (std::any_of(told_faces_.begin(), told_faces_.end(), knows)) return;
+                edge.put_into(out, rank, *shared_);
+            });
         }
     }
     void tell(const Part& part) {
-        shared_->route(part.all(), box_, [&](Bytes& out) { part.put_into(out); });
+        shared_->route(part.all(), box_,
+                       [&](Bytes& out, int rank) { part.put_into(out, rank, *shared_); });
     }
     void check(const ElementView<float>& view, const Split& split) {
         if (!probe_.divides_one_way()) return;
@@ -121,6 +170,7 @@ private:
     nestgrid::detail::HangingProbe probe_;
     Outbox box_;
     std::vector<Part> told_;
+    std::vector<ToldFace> told_faces_;  // of one leaf
     std::map<const Rule*, OneWayFaces> faces_;
     SplitKeys keys_{};
 };

@@ -13,7 +13,7 @@ namespace nestgrid::engine {
 void SharedGradients::sum_up(const SharedNodes& shared, NodeGradients& sums) {
     Outbox box(shared.ranks().size());
     for (const Term& term : terms_) {
-        shared.route(std::span(&term.node, 1), box, [&](Bytes& out) {
+        shared.route(std::span(&term.node, 1), box, [&](Bytes& out, int) {
             put(out, term.node);
             put(out, term.gradient);
             put(out, static_cast<std::uint8_t>(term.place.size()));

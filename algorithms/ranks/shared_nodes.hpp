@@ -52,7 +52,9 @@ public:
     const Point& corner() const { return corner_; }
     void set_corner(const Point& x) { corner_ = x; }
     std::size_t count() const { return index_.size(); }
-    std::span<const NodeKey> common() const { return common_; }
+    std::size_t common_count() const { return common_.size(); }
+    /// A common node, in an order that is the same on all ranks; none where it is not here.
+    const NodeKey* common(std::size_t i) const { return common_here_[i] ? &common_[i] : nullptr; }
     /// Where a coarse element is among those of all ranks: they lie in the order of these.
     std::uint64_t coarse_place(std::size_t i) const {
         return coarse_places_.empty() ? i : coarse_places_[i];
@@ -62,7 +64,9 @@ public:
         return std::all_of(nodes.begin(), nodes.end(), [&](NodeKey n) { return is_shared(n); });
     }
 
-    /// Calls write(bytes) for the boxes of all other ranks that have all of these nodes.
+    static constexpr int all_ranks = -1;
+    /// Calls write(bytes, rank) for the boxes of all other ranks that have all of these nodes, or
+    /// for that to all ranks.
     template <class Write>
     void route(std::span<const NodeKey> nodes, Outbox& box, Write&& write) const;
     /// Sends what route() put into a box, and calls take(rank, reader). Collective.
@@ -71,6 +75,10 @@ public:
         box.send(*ranks_, take);
         if (!common_.empty()) box.send_to_all(*ranks_, take);
     }
+    /// The number by which this rank and another one, or all, call a node that they have.
+    std::uint32_t number_with(int rank, NodeKey node) const;
+    /// None where it is common and not here.
+    const NodeKey* node_with(int rank, std::uint32_t number) const;
     /// Calls write(bytes, node) for each node that is not common and each other rank that has it,
     /// and take(rank, node, reader) for what others wrote. Collective.
     template <class Write, class Take>
@@ -94,7 +102,7 @@ private:
     template <class Numbers, class Get, class Raise>
     bool raise_common(Get& get, Raise& raise) const;
     void keep(NodeKey node, std::vector<int> sharers);
-    void keep_common(std::span<const Candidate> candidates);
+    void keep_common(std::vector<NodeKey> names, std::span<const Candidate> candidates);
 
     Ranks* ranks_;
     std::uint64_t epoch_;
@@ -103,9 +111,9 @@ private:
     std::vector<NodeKey> keys_;                     // of nodes that are not common, in order
     std::vector<std::vector<int>> sharers_;         // of each: the other ranks, in order
     std::vector<std::vector<std::uint32_t>> with_;  // of each rank: the numbers of the nodes
-    std::vector<NodeKey> common_;                   // in order, the same on all ranks
+    std::vector<NodeKey> common_;                   // in the order of their names, on all ranks
     std::vector<bool> common_here_;
-    KeyTable<NodeKey, std::uint32_t> index_;  // numbers; keys_.size() where common
+    KeyTable<NodeKey, std::uint32_t> index_;  // in keys_; behind these, in common_
     HangingNodes hanging_;
     bool any_hangs_ = false;
 };
@@ -117,7 +125,7 @@ void SharedNodes::route(std::span<const NodeKey> nodes, Outbox& box, Write&& wri
     for (const NodeKey node : nodes) {
         const std::uint32_t* const at = index_.find(node);
         if (at == nullptr) return;
-        if (*at == keys_.size()) continue;
+        if (*at >= keys_.size()) continue;
         const std::vector<int>& sharers = sharers_[*at];
         std::vector<int> left;
         if (any) {
@@ -127,8 +135,8 @@ void SharedNodes::route(std::span<const NodeKey> nodes, Outbox& box, Write&& wri
         with_all = any ? std::move(left) : sharers;
         any = true;
     }
-    if (!any) return write(box.to_all());
-    for (const int rank : with_all) write(box.to(rank));
+    if (!any) return write(box.to_all(), all_ranks);
+    for (const int rank : with_all) write(box.to(rank), rank);
 }
 
 template <class Write, class Take>

@@ -81,7 +81,7 @@ void measure(const std::string& name, Grid grid, std::size_t leaves, int ranks) 
             meter.take(step);
         }
         busiest.take("shared nodes", distributed.shared_nodes()->count());
-        busiest.take("common nodes", distributed.shared_nodes()->common().size());
+        busiest.take("common nodes", distributed.shared_nodes()->common_count());
     });
     std::printf("%s leaves %u\n", name.c_str(), whole.leaves);
     for (const auto& [figure, number] : busiest.figures) {

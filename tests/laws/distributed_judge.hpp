@@ -116,7 +116,7 @@ public:
             ranks.begin(ForgetfulRanks::Step::preroll);
             const HierarchicalIndicator indicator(grid, field, threads);
             wrong_nodes += wrong(expected, part, mine, *grid.shared_nodes(), indicator);
-            common = grid.shared_nodes()->common().size();
+            common = grid.shared_nodes()->common_count();
             std::size_t i = 0;
             ranks.begin(ForgetfulRanks::Step::draw);
             draw(grid, field, indicator, threads, [&](const Isosurface<dim>& result) {
