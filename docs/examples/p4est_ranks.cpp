@@ -3,7 +3,8 @@
 //
 // A forest that p8est distributes over MPI, refined and repartitioned, and one closed surface of
 // it: docs/distributed.md goes through it. Each rank draws its piece where the leaves are, and
-// writes it into its part of one file.
+// writes it into its part of one file; and into one of its own, where a list of these is asked for.
+//     p4est_ranks [surface.vtp [surface.pvtp]]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -71,7 +72,7 @@ struct Wave {
 };
 // [field]
 
-void draw(p8est_t* forest, const char* path) {
+void draw(p8est_t* forest, const char* path, const char* list) {
     // [ranks]
     MpiRanks ranks(MPI_COMM_WORLD);
     const P4estGrid<3> mine(forest);                  // what this rank has
@@ -87,10 +88,12 @@ void draw(p8est_t* forest, const char* path) {
     // [measures]
     const SurfaceMeasures whole = measure_pieces(piece, joined, grid).total;
     // [measures]
+    if (list != nullptr) write_pvtp(ranks, piece, joined, list);
     if (ranks.rank() != 0) return;
-    std::printf("%d ranks, %llu triangles, %llu open edges, |U| <= %.3f, area %.6f, volume %.6f\n",
-                ranks.size(), static_cast<unsigned long long>(joined.simplices),
-                static_cast<unsigned long long>(joined.open), piece.error_bound, whole.area,
+    std::printf("%d ranks, %llu triangles, %llu open edges, ", ranks.size(),
+                static_cast<unsigned long long>(joined.simplices),
+                static_cast<unsigned long long>(joined.open));
+    std::printf("|U| <= %.3f, area %.6f, volume %.6f\n", piece.error_bound, whole.area,
                 whole.volume);
 }
 
@@ -106,7 +109,7 @@ int main(int argc, char** argv) {
         p8est_refine(forest, 0, crosses, nullptr);
         p8est_partition(forest, 0, nullptr);
     }
-    draw(forest, argc > 1 ? argv[1] : "surface.vtp");
+    draw(forest, argc > 1 ? argv[1] : "surface.vtp", argc > 2 ? argv[2] : nullptr);
     p8est_destroy(forest);
     p8est_connectivity_destroy(cube);
     MPI_Finalize();
