@@ -117,14 +117,15 @@ private:
         const Topology& t = leaf.topology();
         bool has_keys = false;
         for (std::size_t f = 0; f < t.faces; ++f) {
+            const auto count = static_cast<std::size_t>(t.face[f].corners);
+            const std::span corner = std::span(t.face[f].corner).first(count);
             unsigned on = 0xFF & ~unsigned{in_part};
-            for (int i = 0; i < t.face[f].corners; ++i) on &= level.on[t.face[f].corner[i]];
+            for (const std::size_t k : corner) on &= level.on[k];
             if (on == 0) continue;
             if (!std::exchange(has_keys, true)) walk_.corners(leaf, keys_.data(), nullptr);
             FaceNodes& nodes = faces_.emplace_back();
-            for (int i = 0; i < 4; ++i) {
-                const int corner = t.face[f].corner[std::min(i, t.face[f].corners - 1)];
-                nodes[static_cast<std::size_t>(i)] = *number_.find(keys_[corner]);
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                nodes[i] = *number_.find(keys_[corner[std::min(i, count - 1)]]);
             }
             std::sort(nodes.begin(), nodes.end());
         }

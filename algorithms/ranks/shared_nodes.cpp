@@ -84,9 +84,9 @@ void SharedNodes::find(std::span<const Candidate> candidates, std::size_t most_s
     Outbox question(size);
     std::vector<std::vector<NodeKey>> asked(static_cast<std::size_t>(size));  // of each home
     for (const Candidate& node : candidates) {
-        const std::uint64_t home = hash(node.name + 1) % static_cast<std::uint64_t>(size);
-        asked[home].push_back(node.key);
-        Bytes& out = question.to(static_cast<int>(home));
+        const auto home = static_cast<int>(hash(node.name + 1) % static_cast<std::uint64_t>(size));
+        asked[static_cast<std::size_t>(home)].push_back(node.key);
+        Bytes& out = question.to(home);
         if (out.empty()) put(out, static_cast<std::uint8_t>(places));
         put(out, node.name);
         if (compared) put(out, short_hash(hash(node.key)));
