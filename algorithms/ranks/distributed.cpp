@@ -79,6 +79,8 @@ private:
         /// As derived from ids of coarse elements, which all ranks list: the same on all.
         std::array<NodeKey, std::tuple_size_v<SplitKeys>> name;
     };
+    /// Nodes inside an element that is here wholly, on its boundary, and those that are looked for.
+    enum class Whose : std::uint8_t { inside, ours, perhaps_others };
     static constexpr std::uint8_t in_part = 0x80;    ///< of an element that is here in part
     using FaceNodes = std::array<std::uint32_t, 4>;  ///< in order; triangles name one twice
 
@@ -102,33 +104,39 @@ private:
         }
         for (std::size_t n = view.level == 0 ? 0 : view.corner_count(); n < count; ++n) {
             if (level.on[n] == 0) continue;
-            const auto number = static_cast<std::uint32_t>(nodes_.size());
-            const auto [known, is_new] = number_.insert(keys_[n], number);
-            if (is_new) {
-                nodes_.push_back({named_ ? level.name[n] : keys_[n], keys_[n],
-                                  places_ ? hash_of(positions_[n]) : 0});
-                others_may_have_.push_back(false);
-            }
-            if (level.on[n] == in_part || dimension_ < 3) others_may_have_[*known] = true;
+            const std::uint32_t i = number(
+                keys_[n],
+                {named_ ? level.name[n] : keys_[n], keys_[n], places_ ? hash_of(positions_[n]) : 0},
+                Whose::ours);
+            if (level.on[n] == in_part || dimension_ < 3) whose_[i] = Whose::perhaps_others;
         }
     }
-    /// Notes the faces of a leaf on the boundary of the greatest element that is here wholly.
+    /// Notes the faces of a leaf that touch the boundary of the greatest element here wholly.
     void put_faces(const ElementView<float>& leaf, const Level& level) {
         const Topology& t = leaf.topology();
+        const auto touches = [&](std::size_t k) { return level.on[k] != 0; };
         bool has_keys = false;
         for (std::size_t f = 0; f < t.faces; ++f) {
             const auto count = static_cast<std::size_t>(t.face[f].corners);
             const std::span corner = std::span(t.face[f].corner).first(count);
-            unsigned on = 0xFF & ~unsigned{in_part};
-            for (const std::size_t k : corner) on &= level.on[k];
-            if (on == 0) continue;
+            if (std::none_of(corner.begin(), corner.end(), touches)) continue;
             if (!std::exchange(has_keys, true)) walk_.corners(leaf, keys_.data(), nullptr);
             FaceNodes& nodes = faces_.emplace_back();
             for (std::size_t i = 0; i < nodes.size(); ++i) {
-                nodes[i] = *number_.find(keys_[corner[std::min(i, count - 1)]]);
+                const std::size_t k = corner[std::min(i, count - 1)];
+                nodes[i] = number(keys_[k], {}, touches(k) ? Whose::ours : Whose::inside);
             }
             std::sort(nodes.begin(), nodes.end());
         }
+    }
+    /// \param node of a new one
+    std::uint32_t number(NodeKey key, const SharedNodes::Candidate& node, Whose whose) {
+        const auto [known, is_new] = number_.insert(key, static_cast<std::uint32_t>(nodes_.size()));
+        if (is_new) {
+            nodes_.push_back(node);
+            whose_.push_back(whose);
+        }
+        return *known;
     }
     void keep_beside_others() {
         std::sort(faces_.begin(), faces_.end());
@@ -136,13 +144,15 @@ private:
             const auto end =
                 std::find_if(at, faces_.end(), [&](const auto& f) { return f != *at; });
             if (end - at != 2) {
-                for (const std::uint32_t node : *at) others_may_have_[node] = true;
+                for (const std::uint32_t node : *at) {
+                    if (whose_[node] == Whose::ours) whose_[node] = Whose::perhaps_others;
+                }
             }
             at = end;
         }
         std::size_t kept = 0;
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            if (others_may_have_[i]) nodes_[kept++] = nodes_[i];
+            if (whose_[i] == Whose::perhaps_others) nodes_[kept++] = nodes_[i];
         }
         nodes_.resize(kept);
     }
@@ -200,7 +210,7 @@ private:
     std::vector<Level> levels_;                // on the way down
     KeyTable<NodeKey, std::uint32_t> number_;  // of nodes_
     std::vector<SharedNodes::Candidate> nodes_;
-    std::vector<bool> others_may_have_;  // of each
+    std::vector<Whose> whose_;  // of each
     std::vector<FaceNodes> faces_;
     SplitKeys keys_{};
     SplitPositions positions_{};

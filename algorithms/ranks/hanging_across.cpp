@@ -18,35 +18,32 @@ namespace {
 /// The corners of an edge or a face, in tensor order.
 struct Part {
     std::array<NodeKey, 4> key{};
+    std::array<bool, 4> here{true, true, true, true};  ///< else it is common, and not on this rank
     std::uint8_t corners = 0;
     bool of_leaf = true;  ///< else an element divides it between the middles of 01 and 23 first
 
-    Part() = default;
     template <class Corners>
     Part(std::span<const NodeKey> keys, const Corners& of, std::size_t count, bool leaf)
         : corners{static_cast<std::uint8_t>(count)}, of_leaf{leaf} {
         for (std::size_t i = 0; i < count; ++i) key[i] = keys[of[i]];
     }
-    /// Reads what a rank wrote, with the numbers by which both call their nodes: none where this
-    /// rank has not got all of these.
-    static std::optional<Part> read(Reader& in, int rank, const SharedNodes& shared) {
-        Part part;
+    /// Reads what a rank wrote, with the numbers by which both call their nodes.
+    Part(Reader& in, int rank, const SharedNodes& shared) {
         const auto what = in.get<std::uint8_t>();
-        part.corners = what >> 1U;
-        part.of_leaf = (what & 1U) != 0;
-        bool here = true;
-        for (std::size_t i = 0; i < part.corners; ++i) {
+        corners = what >> 1U;
+        of_leaf = (what & 1U) != 0;
+        for (std::size_t i = 0; i < corners; ++i) {
             const NodeKey* const node = shared.node_with(rank, in.get<std::uint32_t>());
-            here = here && node != nullptr;
-            if (here) part.key[i] = *node;
+            if (node != nullptr) key[i] = *node;
+            here[i] = node != nullptr;
         }
-        return here ? std::optional(part) : std::nullopt;
     }
     void put_into(Bytes& out, int rank, const SharedNodes& shared) const {
         put(out, static_cast<std::uint8_t>(unsigned{corners} << 1U | unsigned{of_leaf}));
         for (const NodeKey node : all()) put(out, shared.number_with(rank, node));
     }
     std::span<const NodeKey> all() const { return std::span(key).first(corners); }
+    bool all_here() const { return here[0] && here[1] && here[2] && here[3]; }
 };
 
 class HangingAcross {
@@ -72,15 +69,14 @@ public:
     }
     void exchange() {
         shared_->send(box_, [&](int rank, Reader& in) {
-            while (in.more()) {
-                if (const auto part = Part::read(in, rank, *shared_)) told_.push_back(*part);
-            }
+            while (in.more()) told_.emplace_back(in, rank, *shared_);
         });
     }
     HangingNodes find() {
         for (const Part& part : told_) {
             if (part.of_leaf) probe_leaf_part(part);
-            if (!part.of_leaf && probe_.crosses(part.key)) refuse_crossed("elements of two ranks");
+            if (!part.of_leaf && part.all_here() && probe_.crosses(part.key))
+                refuse_crossed("elements of two ranks");
         }
         for_each_element(walk_, false, [&](const ElementView<float>& view, const Split& split) {
             if (split.rule != nullptr) return check(view, split);
@@ -101,15 +97,20 @@ private:
 
     /// An edge, or a face with its edges.
     void probe_leaf_part(const Part& part) {
-        const auto& k = part.key;
-        if (part.corners == 3) probe_edges(std::array{k[0], k[1], k[2]});
-        if (part.corners == 4) probe_edges(std::array{k[0], k[1], k[3], k[2]});
-        probe_.probe_part(part.all());
+        if (part.corners > 2) probe_edges(part);
+        if (part.all_here()) probe_.probe_part(part.all());
     }
-    template <std::size_t corners>
-    void probe_edges(const std::array<NodeKey, corners>& loop) {
-        for (std::size_t i = 0; i < corners; ++i) {
-            probe_.probe_part(std::array{loop[i], loop[(i + 1) % corners]});
+    void probe_edges(const Part& face) {
+        constexpr std::array<std::size_t, 3> triangle{0, 1, 2};
+        constexpr std::array<std::size_t, 4> quadrilateral{0, 1, 3, 2};
+        const std::span<const std::size_t> loop = face.corners == 3
+                                                      ? std::span<const std::size_t>(triangle)
+                                                      : std::span<const std::size_t>(quadrilateral);
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const std::size_t from = loop[i];
+            const std::size_t to = loop[(i + 1) % loop.size()];
+            if (!face.here[from] || !face.here[to]) continue;
+            probe_.probe_part(std::array{face.key[from], face.key[to]});
         }
     }
     using OneWayFaces = std::vector<nestgrid::detail::OneWayFace>;
