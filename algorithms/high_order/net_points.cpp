@@ -85,6 +85,8 @@ double bernstein(const SimplexIndex::Alpha& alpha, const Barycentric& at) {
 struct NetPoints {
     std::vector<Barycentric> point;
     NetMatrix to_coefficients;
+    /// The others are values at corners: exactly those that are given.
+    std::vector<std::size_t> between_corners;
 
     NetPoints(std::size_t dimension, int degree) {
         const auto& alpha = simplex_index(dimension, degree).alpha;
@@ -99,6 +101,10 @@ struct NetPoints {
             for (const auto& a : alpha) at_points.push_back(bernstein(a, at));
         }
         to_coefficients = inverse(std::move(at_points), alpha.size());
+        for (std::size_t i = 0; i < alpha.size(); ++i) {
+            const auto& a = alpha[i];
+            if (std::find(a.begin(), a.end(), degree) == a.end()) between_corners.push_back(i);
+        }
     }
 };
 
@@ -157,22 +163,21 @@ std::vector<Point> net_points(int degree, const Factors& factors) {
 }
 
 void to_coefficients(double* net, int degree, const Factors& factors) {
-    std::array<double, simplex_size(max_degree, 3)> line;
+    NetRoom values;
     for (std::size_t f = 0; f < factors.count; ++f) {
         const Lanes lanes(degree, factors, f);
-        const NetMatrix& matrix = net_points_of(factors.dimension[f], degree).to_coefficients;
-        const auto& alpha = simplex_index(factors.dimension[f], degree).alpha;
-        for (std::size_t i = 0; i < lanes.outer * lanes.stride; ++i) {
-            double* const at = net + i / lanes.stride * lanes.block() + i % lanes.stride;
-            for (std::size_t k = 0; k < lanes.count; ++k) line[k] = at[k * lanes.stride];
-            for (std::size_t r = 0; r < lanes.count; ++r) {
-                // Corners are values: exactly those that are given.
-                if (std::find(alpha[r].begin(), alpha[r].end(), degree) != alpha[r].end()) continue;
-                double sum = 0;
+        const NetPoints& points = net_points_of(factors.dimension[f], degree);
+        for (std::size_t o = 0; o < lanes.outer; ++o) {
+            double* const block = net + o * lanes.block();
+            std::copy_n(block, lanes.block(), values.begin());
+            for (const std::size_t r : points.between_corners) {
+                double* const row = block + r * lanes.stride;
+                std::fill_n(row, lanes.stride, 0.0);
                 for (std::size_t k = 0; k < lanes.count; ++k) {
-                    sum += matrix[r * lanes.count + k] * line[k];
+                    const double share = points.to_coefficients[r * lanes.count + k];
+                    const double* const of = values.data() + k * lanes.stride;
+                    for (std::size_t s = 0; s < lanes.stride; ++s) row[s] += share * of[s];
                 }
-                at[r * lanes.stride] = sum;
             }
         }
     }
