@@ -119,6 +119,24 @@ const NetPoints& net_points_of(std::size_t dimension, int degree) {
     return all[(dimension - 1) * max_degree + static_cast<std::size_t>(degree - 1)];
 }
 
+/// Puts the sums of some rows, times their shares.
+void put_sums(const double* rows, const Lanes& lanes, const double* shares, double* out) {
+    std::size_t i = 0;
+    for (; i + 4 <= lanes.stride; i += 4) {
+        std::array<double, 4> sum{};
+        for (std::size_t k = 0; k < lanes.count; ++k) {
+            for (std::size_t j = 0; j < 4; ++j)
+                sum[j] += shares[k] * rows[k * lanes.stride + i + j];
+        }
+        std::copy(sum.begin(), sum.end(), out + i);
+    }
+    for (; i < lanes.stride; ++i) {
+        double sum = 0;
+        for (std::size_t k = 0; k < lanes.count; ++k) sum += shares[k] * rows[k * lanes.stride + i];
+        out[i] = sum;
+    }
+}
+
 /// Halves lines of coefficients side by side in place: they become the upper halves.
 void halve_lines(double* lines, std::size_t count, std::size_t stride, double* lower) {
     for (std::size_t i = 0; i < stride; ++i) lower[i] = lines[i];
@@ -171,13 +189,8 @@ void to_coefficients(double* net, int degree, const Factors& factors) {
             double* const block = net + o * lanes.block();
             std::copy_n(block, lanes.block(), values.begin());
             for (const std::size_t r : points.between_corners) {
-                double* const row = block + r * lanes.stride;
-                std::fill_n(row, lanes.stride, 0.0);
-                for (std::size_t k = 0; k < lanes.count; ++k) {
-                    const double share = points.to_coefficients[r * lanes.count + k];
-                    const double* const of = values.data() + k * lanes.stride;
-                    for (std::size_t s = 0; s < lanes.stride; ++s) row[s] += share * of[s];
-                }
+                const double* const shares = points.to_coefficients.data() + r * lanes.count;
+                put_sums(values.data(), lanes, shares, block + r * lanes.stride);
             }
         }
     }
