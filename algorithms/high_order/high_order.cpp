@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <high_order/virtual_elements.hpp>
+#include <high_order/high_order_data.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -188,31 +188,6 @@ std::size_t HighOrderData::memory_bytes() const {
            (corners_ ? corners_->memory_bytes() : 0) + (last_ ? last_->memory_bytes() : 0);
 }
 
-namespace {
-
-HierarchyFacts facts_of(const HighOrderData& data) {
-    const HierarchyFacts& base = data.base->facts();
-    HierarchyFacts facts;
-    facts.dimension = base.dimension;
-    facts.components = base.components;
-    facts.features = static_cast<unsigned>(Feature::constrained) |
-                     static_cast<unsigned>(Feature::outside) |
-                     (base.features & (static_cast<unsigned>(Feature::boundary_faces) |
-                                       static_cast<unsigned>(Feature::new_positions)));
-    facts.decodes = true;  // what is below an element depends on P_S U at its corners
-    if (data.places) facts.features |= static_cast<unsigned>(Feature::new_positions);
-    // Pyramids have tetrahedra below them.
-    facts.only_shape = base.only_shape == Shape::pyramid ? Shape::point : base.only_shape;
-    return facts;
-}
-
-const VirtualElement& element_of(const Handle& handle) {
-    static_assert(nestgrid::detail::fits_handle<VirtualElement>);
-    return nestgrid::detail::element_of<VirtualElement>(handle);
-}
-
-}  // namespace
-
 }  // namespace engine
 
 HighOrder::HighOrder(const Hierarchy<float>& base, const Executor& executor)
@@ -245,63 +220,5 @@ double HighOrder::least_tolerance(double position_tolerance) const {
 }
 
 std::size_t HighOrder::memory_bytes() const { return data_->memory_bytes(); }
-
-VirtualRefinement::VirtualRefinement(const HighOrder& data, const VirtualOptions& options)
-    : Hierarchy<double>(engine::facts_of(*data.data_)) {
-    struct Kept {
-        std::shared_ptr<const void> base;  // outlives the elements
-        engine::VirtualElements elements;
-    };
-    const std::shared_ptr<const Kept> kept(
-        new Kept{data.base_, engine::VirtualElements(data.data_, options)});
-    elements_ = {kept, &kept->elements};
-}
-
-const Criterion& VirtualRefinement::criterion() const { return elements_->criterion(); }
-const Bounds& VirtualRefinement::bounds() const { return elements_->data().field.nodes; }
-
-std::size_t VirtualRefinement::coarse_count() const {
-    return elements_->data().base->coarse_count();
-}
-std::uint64_t VirtualRefinement::epoch() const { return elements_->data().base->epoch(); }
-Elements VirtualRefinement::make_elements() const { return Elements::of<engine::VirtualElement>(); }
-std::unique_ptr<Task> VirtualRefinement::open() const { return elements_->open(); }
-
-void VirtualRefinement::coarse(Task* task, std::size_t i, Coarse& coarse, Family& family) const {
-    elements_->coarse(task, i, coarse, family);
-}
-
-NodeMask VirtualRefinement::coarse_values(Task* task, std::size_t i, std::size_t corners,
-                                          double* out) const {
-    return elements_->coarse_values(task, i,
-                                    {out, corners * elements_->data().field.summary.components});
-}
-
-NodeMask VirtualRefinement::enter(Task* task, const Handle& element, const Rule& /*rule*/,
-                                  NodeMask which, double* values, NodeMask wanted,
-                                  Family& family) const {
-    elements_->enter(task, engine::element_of(element), which, values, wanted, family);
-    return 0;
-}
-
-NodeMask VirtualRefinement::new_values(Task* task, const Handle& element, const Rule& /*rule*/,
-                                       NodeMask which, double* values) const {
-    elements_->new_values(task, engine::element_of(element), which, values);
-    return 0;
-}
-
-void VirtualRefinement::corners(Task* task, const Handle& element, std::size_t count, NodeKey* keys,
-                                Point* /*positions*/, unsigned* boundary) const {
-    const engine::VirtualElement& e = engine::element_of(element);
-    if (keys != nullptr) std::copy_n(e.state->key.begin(), count, keys);
-    if (boundary != nullptr && offers(Feature::boundary_faces)) {
-        *boundary = elements_->boundary(task, e);
-    }
-}
-
-void VirtualRefinement::new_positions(Task* task, const Handle& element, NodeMask which,
-                                      std::span<Point> out) const {
-    elements_->new_positions(task, engine::element_of(element), which, out);
-}
 
 }  // namespace nestgrid

@@ -210,6 +210,32 @@ void LeafRecords::add_parts(RecordSearch& search, std::span<const BaseElement> w
     }
 }
 
+bool LeafRecords::coincides(const LeafPolynomial& leaf, const BaseElement& e, std::size_t part,
+                            std::int32_t number) const {
+    if (number < 0 || !leaf.parts().is_box) return false;
+    const Record& record = records_[static_cast<std::size_t>(number)];
+    const LeafPolynomial& owner = leaves_[record.leaf];
+    if (&owner == &leaf) return true;
+    if (!owner.parts().is_box || owner.degree != leaf.degree) return false;
+    const std::size_t corners = frame_size(leaf.parts().parts[part]);
+    const auto rows = [corners](const LeafPolynomial& of, const auto& frame) {
+        const std::array<Place, 3> places = places_of(of.parts(), frame);
+        return BoxRows(of.degree, of.factors(), std::span(places).first(corners));
+    };
+    const BoxRows own = rows(leaf, frame_corners(e.key, leaf.parts().parts[part]));
+    const BoxRows other = rows(owner, record.corner);
+    for (std::size_t c = 0; c < drawn_; ++c) {
+        const double* const in_leaf = net(leaf, c);
+        const double* const in_owner = net(owner, c);
+        for (std::size_t j = 0; j < own.rows; ++j) {
+            for (std::size_t i = 0; i < own.count; ++i) {
+                if (in_leaf[own(i, j)] != in_owner[other(i, j)]) return false;
+            }
+        }
+    }
+    return true;
+}
+
 /// Looks from the coarse element down. What is found for parts of fathers serves all children.
 auto RecordSearch::find(std::span<const BaseElement> way, PartOrCorner of) -> Found {
     const BaseElement& e = way.back();
@@ -246,6 +272,11 @@ auto RecordSearch::find(std::span<const BaseElement> way, PartOrCorner of) -> Fo
 
 std::uint32_t RecordSearch::owner(std::span<const BaseElement> way, std::size_t part) {
     return records_->records_[static_cast<std::size_t>(find(way, part).record)].leaf;
+}
+
+std::int32_t RecordSearch::whole(std::span<const BaseElement> way, std::size_t part) {
+    const Found found = find(way, part);
+    return found.level + 1 == way.size() ? found.record : none;
 }
 
 OnRecord RecordSearch::around(std::span<const BaseElement> way, PartOrCorner of,

@@ -139,6 +139,11 @@ public:
     NetFacts facts_on(const OnRecord& part) const;
     /// The same of a part of a leaf, with the record on its corners, and what the leaf has there.
     PartFacts compared(const LeafPolynomial& leaf, std::size_t part, const OnRecord& on) const;
+    /// Whether the record that is a part of a leaf has the very coefficients that the leaf has
+    /// there and these say nothing that the leaf's own do not: in boxes, a part is no less flat
+    /// than the whole, and in its range.
+    bool coincides(const LeafPolynomial& leaf, const BaseElement& e, std::size_t part,
+                   std::int32_t record) const;
     std::uint32_t owner_of(const OnRecord& part) const {
         return records_[static_cast<std::size_t>(part.record)].leaf;
     }
@@ -205,6 +210,8 @@ public:
                     std::span<const Place> points);
     /// The leaf that owns the record on a part of a leaf.
     std::uint32_t owner(std::span<const BaseElement> way, std::size_t part);
+    /// The record that a part of a leaf is; -1 where it is a part of one.
+    std::int32_t whole(std::span<const BaseElement> way, std::size_t part);
 
 private:
     static constexpr std::int32_t none = -1;

@@ -70,15 +70,49 @@ void widen(SecondRange& range, double to) {
     range.greatest = std::max(range.greatest, to);
 }
 
+/// The least and the greatest of many numbers, four at a time.
+class Extremes {
+public:
+    /// \param from a number of their range
+    explicit Extremes(double from) {
+        least_.fill(from);
+        greatest_.fill(from);
+    }
+    /// \param number called with 0 to count - 1
+    template <class Number>
+    void add(std::size_t count, const Number& number) {
+        std::size_t i = 0;
+        for (; i + least_.size() <= count; i += least_.size()) {
+            for (std::size_t k = 0; k < least_.size(); ++k) widen(k, number(i + k));
+        }
+        for (std::size_t k = 0; i + k < count; ++k) widen(k, number(i + k));
+    }
+    double least() const {
+        return std::min(std::min(least_[0], least_[1]), std::min(least_[2], least_[3]));
+    }
+    double greatest() const {
+        return std::max(std::max(greatest_[0], greatest_[1]), std::max(greatest_[2], greatest_[3]));
+    }
+
+private:
+    void widen(std::size_t k, double to) {
+        least_[k] = std::min(least_[k], to);
+        greatest_[k] = std::max(greatest_[k], to);
+    }
+
+    std::array<double, 4> least_;
+    std::array<double, 4> greatest_;
+};
+
 NetSides of_segment(const double* net, const Lanes& lanes) {
-    SecondRange range;
+    Extremes second(0);
     for (std::size_t o = 0; o < lanes.outer; ++o) {
         const double* const at = net + o * lanes.block();
-        for (std::size_t i = 0; i < lanes.stride * (lanes.count - 2); ++i) {
-            widen(range, at[i] - 2 * at[i + lanes.stride] + at[i + 2 * lanes.stride]);
-        }
+        second.add(lanes.stride * (lanes.count - 2), [&](std::size_t i) {
+            return at[i] - 2 * at[i + lanes.stride] + at[i + 2 * lanes.stride];
+        });
     }
-    return {range.greatest / 8, -range.least / 8};
+    return {second.greatest() / 8, -second.least() / 8};
 }
 
 /// Along the edges of a triangle or tetrahedron D = middle + oscillation: in u - I u the middles
@@ -169,11 +203,9 @@ std::size_t net_corner(int degree, const Factors& factors, std::size_t corner) {
 
 NetFacts net_facts(const double* net, int degree, const Factors& factors) {
     const std::size_t size = net_size(degree, factors);
-    NetFacts facts{0, net[0], net[0]};
-    for (std::size_t i = 1; i < size; ++i) {
-        facts.least = std::min(facts.least, net[i]);
-        facts.greatest = std::max(facts.greatest, net[i]);
-    }
+    Extremes all(net[0]);
+    all.add(size, [net](std::size_t i) { return net[i]; });
+    NetFacts facts{0, all.least(), all.greatest()};
     if (degree < 2) return facts;
     NetSides sum;
     for (std::size_t f = 0; f < factors.count; ++f) {

@@ -141,6 +141,21 @@ NetPart part_at(const Factors& whole, std::span<const Place> points, int level);
 /// Puts the coefficients on a part.
 void restrict_net(const double* net, int degree, const Factors& whole, const NetPart& part,
                   double* out);
+/// Where the coefficients on an edge or face of a box are: their numbers are linear in the place.
+struct BoxRows {
+    std::size_t count;  ///< in a row
+    std::size_t rows;
+    std::ptrdiff_t first = 0;
+    std::ptrdiff_t along = 0;   ///< from one in a row to the next
+    std::ptrdiff_t across = 0;  ///< from row to row
+
+    /// \param frame as in take_part()
+    BoxRows(int degree, const Factors& box, std::span<const Place> frame);
+    std::size_t operator()(std::size_t i, std::size_t row) const {
+        return static_cast<std::size_t>(first + static_cast<std::ptrdiff_t>(i) * along +
+                                        static_cast<std::ptrdiff_t>(row) * across);
+    }
+};
 /// Copies the coefficients on an edge or face of the whole.
 /// \param frame corner 0 of the part's net and its neighbours, corners of the reference element
 void take_part(const double* net, int degree, const Factors& whole, std::span<const Place> frame,

@@ -172,8 +172,26 @@ void restrict_net(const double* net, int degree, const Factors& whole, const Net
     }
 }
 
+BoxRows::BoxRows(int degree, const Factors& box, std::span<const Place> frame)
+    : count{static_cast<std::size_t>(degree) + 1}, rows{frame.size() == 3 ? count : 1} {
+    std::ptrdiff_t stride = 1;
+    for (std::size_t d = 0; d < box.count; ++d) {
+        first += stride * degree * frame[0][d];
+        along += stride * (frame[1][d] - frame[0][d]);
+        if (rows > 1) across += stride * (frame[2][d] - frame[0][d]);
+        stride *= degree + 1;
+    }
+}
+
 void take_part(const double* net, int degree, const Factors& whole, std::span<const Place> frame,
                const Factors& part, double* out) {
+    if (whole.all_segments()) {
+        const BoxRows from(degree, whole, frame);
+        for (std::size_t j = 0; j < from.rows; ++j) {
+            for (std::size_t i = 0; i < from.count; ++i) *out++ = net[from(i, j)];
+        }
+        return;
+    }
     const bool is_triangle = part.count == 1 && part.dimension[0] == 2;
     const std::int64_t rows = frame.size() == 3 ? degree : 0;
     const auto index = [&](std::int64_t i, std::int64_t j) {
@@ -184,16 +202,6 @@ void take_part(const double* net, int degree, const Factors& whole, std::span<co
         }
         return net_index(degree, whole, at);
     };
-    if (whole.all_segments()) {  // the number is linear in the place
-        const std::size_t first = index(0, 0);
-        const std::size_t along = index(1, 0) - first;
-        const std::size_t across = rows > 0 ? index(0, 1) - first : 0;
-        for (std::int64_t j = 0; j <= rows; ++j) {
-            std::size_t at = first + static_cast<std::size_t>(j) * across;
-            for (int i = 0; i <= degree; ++i, at += along) *out++ = net[at];
-        }
-        return;
-    }
     for (std::int64_t j = 0; j <= rows; ++j) {
         for (std::int64_t i = 0; i <= (is_triangle ? degree - j : degree); ++i) {
             *out++ = net[index(i, j)];

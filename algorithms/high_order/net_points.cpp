@@ -85,6 +85,8 @@ double bernstein(const SimplexIndex::Alpha& alpha, const Barycentric& at) {
 struct NetPoints {
     std::vector<Barycentric> point;
     NetMatrix to_coefficients;
+    /// The others are values at corners: exactly those that are given.
+    std::vector<std::size_t> between_corners;
 
     NetPoints(std::size_t dimension, int degree) {
         const auto& alpha = simplex_index(dimension, degree).alpha;
@@ -99,6 +101,10 @@ struct NetPoints {
             for (const auto& a : alpha) at_points.push_back(bernstein(a, at));
         }
         to_coefficients = inverse(std::move(at_points), alpha.size());
+        for (std::size_t i = 0; i < alpha.size(); ++i) {
+            const auto& a = alpha[i];
+            if (std::find(a.begin(), a.end(), degree) == a.end()) between_corners.push_back(i);
+        }
     }
 };
 
@@ -111,6 +117,24 @@ const NetPoints& net_points_of(std::size_t dimension, int degree) {
         return made;
     }();
     return all[(dimension - 1) * max_degree + static_cast<std::size_t>(degree - 1)];
+}
+
+/// Puts the sums of some rows, times their shares.
+void put_sums(const double* rows, const Lanes& lanes, const double* shares, double* out) {
+    std::size_t i = 0;
+    for (; i + 4 <= lanes.stride; i += 4) {
+        std::array<double, 4> sum{};
+        for (std::size_t k = 0; k < lanes.count; ++k) {
+            for (std::size_t j = 0; j < 4; ++j)
+                sum[j] += shares[k] * rows[k * lanes.stride + i + j];
+        }
+        std::copy(sum.begin(), sum.end(), out + i);
+    }
+    for (; i < lanes.stride; ++i) {
+        double sum = 0;
+        for (std::size_t k = 0; k < lanes.count; ++k) sum += shares[k] * rows[k * lanes.stride + i];
+        out[i] = sum;
+    }
 }
 
 /// Halves lines of coefficients side by side in place: they become the upper halves.
@@ -157,22 +181,16 @@ std::vector<Point> net_points(int degree, const Factors& factors) {
 }
 
 void to_coefficients(double* net, int degree, const Factors& factors) {
-    std::array<double, simplex_size(max_degree, 3)> line;
+    NetRoom values;
     for (std::size_t f = 0; f < factors.count; ++f) {
         const Lanes lanes(degree, factors, f);
-        const NetMatrix& matrix = net_points_of(factors.dimension[f], degree).to_coefficients;
-        const auto& alpha = simplex_index(factors.dimension[f], degree).alpha;
-        for (std::size_t i = 0; i < lanes.outer * lanes.stride; ++i) {
-            double* const at = net + i / lanes.stride * lanes.block() + i % lanes.stride;
-            for (std::size_t k = 0; k < lanes.count; ++k) line[k] = at[k * lanes.stride];
-            for (std::size_t r = 0; r < lanes.count; ++r) {
-                // Corners are values: exactly those that are given.
-                if (std::find(alpha[r].begin(), alpha[r].end(), degree) != alpha[r].end()) continue;
-                double sum = 0;
-                for (std::size_t k = 0; k < lanes.count; ++k) {
-                    sum += matrix[r * lanes.count + k] * line[k];
-                }
-                at[r * lanes.stride] = sum;
+        const NetPoints& points = net_points_of(factors.dimension[f], degree);
+        for (std::size_t o = 0; o < lanes.outer; ++o) {
+            double* const block = net + o * lanes.block();
+            std::copy_n(block, lanes.block(), values.begin());
+            for (const std::size_t r : points.between_corners) {
+                const double* const shares = points.to_coefficients.data() + r * lanes.count;
+                put_sums(values.data(), lanes, shares, block + r * lanes.stride);
             }
         }
     }

@@ -239,6 +239,7 @@ void RealNodes::Preroll::look_at(RecordSearch& search, std::span<const BaseEleme
     const NetFacts own = records_.facts_of(of);
     LeafFacts facts{own.beta, own.beta, own.least, own.greatest, of.jump};
     for (std::size_t p = 0; p < shape.parts.size(); ++p) {
+        if (records_.coincides(of, way.back(), p, search.whole(way, p))) continue;
         const std::array<Place, 4> corners = corners_of(shape, shape.parts[p]);
         const OnRecord on = search.around(way, p, std::span(corners).first(shape.parts[p].count));
         const PartFacts there = records_.compared(of, p, on);
