@@ -50,7 +50,8 @@ bool may_differ(const Hierarchy<float>& grid) {
 /// faces of leaves beside which no leaf here has the same face. Around any other node each leaf is
 /// here: going from face to face there one meets the first leaf that is not across such a face,
 /// which has the node. In planes, which may meet in an edge by more than two, the nodes on the
-/// boundary of each greatest element that is here wholly.
+/// boundary of each greatest element that is here wholly. Where ranks list different coarse
+/// elements, all nodes that this rank has.
 class NodeSearch {
 public:
     /// \param same_coarse whether all ranks list the same coarse elements
@@ -59,14 +60,15 @@ public:
           named_{grid.offers(Feature::own_keys) && same_coarse},
           places_{grid.offers(Feature::new_positions) ||
                   (grid.offers(Feature::own_keys) && !named_)},
-          dimension_{grid.facts().dimension},
+          on_boundary_{same_coarse},
+          by_faces_{same_coarse && grid.facts().dimension == 3},
           task_{grid.open()},
           walk_(grid, {.values = false, .keys = true, .positions = places_, .on_ranks = true}) {}
 
     std::vector<SharedNodes::Candidate> run() {
         if (has_all_leaves(*grid_)) return {};
         for_each_element(
-            walk_, dimension_ < 3,
+            walk_, !by_faces_,
             [&](const ElementView<float>& view, const Split& split) { look_at(view, split); });
         keep_beside_others();
         return std::move(nodes_);
@@ -90,7 +92,7 @@ private:
         const std::size_t count = corners + (is_leaf ? 0 : split.rule->new_nodes.size());
         const Level& level = put_level(view, split, count);
         if (!is_leaf || view.level == 0) put_nodes(view, split, level, count);
-        if (is_leaf && dimension_ == 3) put_faces(view, level);
+        if (is_leaf && by_faces_) put_faces(view, level);
     }
     /// Notes the nodes that others may have, if leaves around them are elsewhere.
     void put_nodes(const ElementView<float>& view, const Split& split, const Level& level,
@@ -108,7 +110,7 @@ private:
                 keys_[n],
                 {named_ ? level.name[n] : keys_[n], keys_[n], places_ ? hash_of(positions_[n]) : 0},
                 Whose::ours);
-            if (level.on[n] == in_part || dimension_ < 3) whose_[i] = Whose::perhaps_others;
+            if (level.on[n] == in_part || !by_faces_) whose_[i] = Whose::perhaps_others;
         }
     }
     /// Notes the faces of a leaf that touch the boundary of the greatest element here wholly.
@@ -123,8 +125,7 @@ private:
             if (!std::exchange(has_keys, true)) walk_.corners(leaf, keys_.data(), nullptr);
             FaceNodes& nodes = faces_.emplace_back();
             for (std::size_t i = 0; i < nodes.size(); ++i) {
-                const std::size_t k = corner[std::min(i, count - 1)];
-                nodes[i] = number(keys_[k], {}, touches(k) ? Whose::ours : Whose::inside);
+                nodes[i] = number(keys_[corner[std::min(i, count - 1)]], {}, Whose::inside);
             }
             std::sort(nodes.begin(), nodes.end());
         }
@@ -162,7 +163,7 @@ private:
         if (levels_.size() < depth + 2) levels_.resize(depth + 2);
         Level& level = levels_[depth];
         const std::size_t corners = view.corner_count();
-        const bool whole = view.member->presence == Presence::here;
+        const bool whole = view.member->presence == Presence::here && on_boundary_;
         const bool begins =
             whole && (view.father == nullptr || view.father->member->presence != Presence::here);
         if (depth == 0 && named_) put_coarse_names(view, level);
@@ -201,9 +202,10 @@ private:
     }
 
     const Hierarchy<float>* grid_;
-    bool named_;   // own keys are compared under names
-    bool places_;  // places are compared
-    int dimension_;
+    bool named_;        // own keys are compared under names
+    bool places_;       // places are compared
+    bool on_boundary_;  // else all nodes are looked for
+    bool by_faces_;
     std::unique_ptr<Task> task_;
     Family family_;
     Walk<float> walk_;
