@@ -106,10 +106,12 @@ private:
         }
         for (std::size_t n = view.level == 0 ? 0 : view.corner_count(); n < count; ++n) {
             if (level.on[n] == 0) continue;
-            const std::uint32_t i = number(
-                keys_[n],
-                {named_ ? level.name[n] : keys_[n], keys_[n], places_ ? hash_of(positions_[n]) : 0},
-                Whose::ours);
+            const std::uint32_t i = number(keys_[n]);
+            if (whose_[i] == Whose::inside) {
+                nodes_[i] = {named_ ? level.name[n] : keys_[n], keys_[n],
+                             places_ ? hash_of(positions_[n]) : 0};
+                whose_[i] = Whose::ours;
+            }
             if (level.on[n] == in_part || !by_faces_) whose_[i] = Whose::perhaps_others;
         }
     }
@@ -125,17 +127,17 @@ private:
             if (!std::exchange(has_keys, true)) walk_.corners(leaf, keys_.data(), nullptr);
             FaceNodes& nodes = faces_.emplace_back();
             for (std::size_t i = 0; i < nodes.size(); ++i) {
-                nodes[i] = number(keys_[corner[std::min(i, count - 1)]], {}, Whose::inside);
+                nodes[i] = number(keys_[corner[std::min(i, count - 1)]]);
             }
             std::sort(nodes.begin(), nodes.end());
         }
     }
-    /// \param node of a new one
-    std::uint32_t number(NodeKey key, const SharedNodes::Candidate& node, Whose whose) {
+    /// The number of a node, which is inside until put_nodes() has it.
+    std::uint32_t number(NodeKey key) {
         const auto [known, is_new] = number_.insert(key, static_cast<std::uint32_t>(nodes_.size()));
         if (is_new) {
-            nodes_.push_back(node);
-            whose_.push_back(whose);
+            nodes_.emplace_back();
+            whose_.push_back(Whose::inside);
         }
         return *known;
     }
