@@ -15,64 +15,28 @@
 #include <p8est_vtk.h>
 
 #include <nestgrid/adapters/mpi_files.hpp>
-#include <nestgrid/adapters/p4est.hpp>
 #include <nestgrid/algorithms/distributed.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 
+#include "p4est_wave.hpp"
+
 using namespace nestgrid;
+using p4est_wave::place;
+using p4est_wave::wave;
+using p4est_wave::Wave;
 
 namespace {
-
-/// Waves around a point of the cube.
-double wave(const Point& x) { return std::sin(14 * norm(x - Point{0.5, 0.4, 0.45})); }
-
-Point place(const p8est_t& forest, p4est_topidx_t tree, p4est_qcoord_t x, p4est_qcoord_t y,
-            p4est_qcoord_t z) {
-    Point at;
-    p8est_qcoord_to_vertex(forest.connectivity, tree, x, y, z, at.data());
-    return at;
-}
 
 /// Refines where the wave crosses zero, on one side of the cube two levels farther.
 int crosses(p8est_t* forest, p4est_topidx_t tree, p8est_quadrant_t* q) {
     const int deepest = *static_cast<const int*>(forest->user_pointer);
     const auto half = P8EST_QUADRANT_LEN(q->level) / 2;
-    const Point middle = place(*forest, tree, q->x + half, q->y + half, q->z + half);
+    const Point middle =
+        place(*forest, static_cast<std::uint32_t>(tree), {q->x + half, q->y + half, q->z + half});
     const double side = middle[0] + 0.3 * middle[1];
     const int most = side < 0.4 ? deepest - 2 : side < 0.75 ? deepest - 1 : deepest;
     return q->level < most && std::abs(wave(middle)) < 14.0 / (1 << q->level) ? 1 : 0;
 }
-
-/// The wave at the corners of the leaves of this rank.
-struct Wave {
-    using value_type = double;
-    using Element = P4estGrid<3>::Element;
-
-    NodeMask coarse_values(std::size_t tree, std::span<double> out) const {
-        NodeMask missing = 0;
-        for (unsigned k = 0; k < 8; ++k) missing |= put(grid->coarse(tree).element, k, k, out);
-        return missing;
-    }
-    NodeMask new_values(const Element& e, NodeMask, std::span<double> out) const {
-        std::array<Element, 8> children;
-        grid->children(e, children);
-        NodeMask missing = 0;
-        for (std::size_t n = 0; n < out.size(); ++n) {
-            const auto [child, corner] = grid->split(e)->new_corner[n];
-            missing |= put(children[child], corner, n, out);
-        }
-        return missing;
-    }
-    NodeMask put(const Element& e, unsigned k, std::size_t n, std::span<double> out) const {
-        if (grid->corner_leaf(e, k) == grid->no_leaf) return NodeMask{1} << n;
-        const auto length = P8EST_QUADRANT_LEN(e.level);
-        const auto at = [&](unsigned d) { return e.anchor[d] + ((k >> d & 1U) != 0 ? length : 0); };
-        out[n] =
-            wave(place(grid->forest(), static_cast<p4est_topidx_t>(e.tree), at(0), at(1), at(2)));
-        return 0;
-    }
-    const P4estGrid<3>* grid;
-};
 
 /// Calls function(), and tells on rank 0 how long the slowest rank took.
 template <class Function>
@@ -99,8 +63,9 @@ sc_array_t* corner_values(const p8est_t& forest) {
             const auto length = P8EST_QUADRANT_LEN(q.level);
             for (unsigned k = 0; k < 8; ++k) {
                 *static_cast<double*>(sc_array_index(values, i++)) = wave(
-                    place(forest, t, q.x + ((k & 1U) != 0 ? length : 0),
-                          q.y + ((k & 2U) != 0 ? length : 0), q.z + ((k & 4U) != 0 ? length : 0)));
+                    place(forest, static_cast<std::uint32_t>(t),
+                          {q.x + ((k & 1U) != 0 ? length : 0), q.y + ((k & 2U) != 0 ? length : 0),
+                           q.z + ((k & 4U) != 0 ? length : 0)}));
             }
         }
     }
