@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: the nestgrid authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run by pvbatch: what ranks wrote, one file of all and one of each, is one closed surface.
+"""Run by pvpython: what ranks wrote, one file of all and one of each, is one closed surface.
 
 Arguments: a folder with surface.vtp and surface.pvtp, where a picture may be written.
 """
