@@ -47,11 +47,11 @@ bool may_differ(const Hierarchy<float>& grid) {
 }
 
 /// Finds the nodes that other ranks may have: those of elements that are here in part, and those of
-/// faces of leaves beside which no leaf here has the same face. Around any other node each leaf is
-/// here: going from face to face there one meets the first leaf that is not across such a face,
-/// which has the node. In planes, which may meet in an edge by more than two, the nodes on the
-/// boundary of each greatest element that is here wholly. Where ranks list different coarse
-/// elements, all nodes that this rank has.
+/// faces of leaves beside which no leaf here has the same face. Around any other node all leaves
+/// are here: the way around it from one that is to one that is not would leave what is here by a
+/// face that has the node and that no other leaf here has. In planes, which may meet in an edge by
+/// more than two, the nodes on the boundary of each greatest element that is here wholly. Where
+/// ranks list different coarse elements, all nodes that this rank has.
 class NodeSearch {
 public:
     /// \param same_coarse whether all ranks list the same coarse elements
@@ -97,9 +97,11 @@ private:
     /// Notes the nodes that others may have, if leaves around them are elsewhere.
     void put_nodes(const ElementView<float>& view, const Split& split, const Level& level,
                    std::size_t count) {
-        walk_.corners(view, keys_.data(), nullptr);
-        if (split.rule != nullptr) walk_.split_keys(view, split, keys_);
-        if (places_ && split.rule == nullptr) walk_.corners(view, nullptr, positions_.data());
+        if (split.rule == nullptr) {
+            walk_.corners(view, keys_.data(), places_ ? positions_.data() : nullptr);
+        } else {
+            walk_.split_keys(view, split, keys_);
+        }
         if (places_ && split.rule != nullptr) {
             const auto of = walk_.split_positions(view, split, positions_);
             if (of.data() != positions_.data()) std::copy(of.begin(), of.end(), positions_.begin());

@@ -11,7 +11,7 @@ namespace nestgrid::engine {
 
 namespace {
 
-/// What a rank tells the home of a node of it.
+/// What a rank says of a node to the rank that collects who has it, the home of its name.
 struct Asked {
     NodeKey name;
     std::uint32_t key = 0;  ///< a hash, as are places: compared, and needed for nothing else
