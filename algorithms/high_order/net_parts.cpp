@@ -4,6 +4,7 @@
 // Parts of nets.
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include <high_order/net.hpp>
 
@@ -74,16 +75,31 @@ private:
     /// One step of de Casteljau. \return the number of coefficients left
     std::size_t step(const double* net, int degree, const Barycentric& at, double* to) const {
         const auto& raised = simplex_index(dimension_, degree).raised;
-        for (std::size_t i = 0; i < raised.size(); ++i) {
-            for (std::size_t s = 0; s < stride_; ++s) {
-                double sum = at[0] * net[raised[i][0] * stride_ + s];
-                for (std::size_t c = 1; c <= dimension_; ++c) {
-                    sum += at[c] * net[raised[i][c] * stride_ + s];
-                }
-                to[i * stride_ + s] = sum;
+        using One = std::integral_constant<std::size_t, 1>;
+        const auto by_dimension = [&](auto stride) {
+            if (dimension_ == 2) {
+                step_of<2>(net, raised, stride, at, to);
+            } else {
+                step_of<3>(net, raised, stride, at, to);
             }
+        };
+        if (stride_ == 1) {
+            by_dimension(One{});
+        } else {
+            by_dimension(stride_);
         }
         return raised.size();
+    }
+    template <std::size_t dimension, class Raised, class Stride>
+    static void step_of(const double* net, const Raised& raised, Stride stride,
+                        const Barycentric& at, double* to) {
+        for (const auto& of : raised) {
+            for (std::size_t s = 0; s < stride; ++s) {
+                double sum = at[0] * net[of[0] * stride + s];
+                for (std::size_t c = 1; c <= dimension; ++c) sum += at[c] * net[of[c] * stride + s];
+                *to++ = sum;
+            }
+        }
     }
 
     std::size_t dimension_;
@@ -94,6 +110,49 @@ private:
     // Room for the nets of all degrees below: those of tetrahedra, or of triangles with at most 9
     // coefficients side by side.
     std::array<double, std::size_t{120} * 9> work_;
+};
+
+/// Numbers of the coefficients on a part, by steps along its frame: net_index() of its places.
+class FrameIndex {
+public:
+    FrameIndex(int degree, const Factors& whole, std::span<const Place> frame)
+        : count_{whole.count} {
+        std::size_t stride = 1;
+        std::size_t axis = 0;
+        for (std::size_t f = 0; f < count_; ++f) {
+            const std::size_t dimension = whole.dimension[f];
+            Factor& factor = factor_[f];
+            factor.stride = stride;
+            if (dimension > 1) factor.number = simplex_index(dimension, degree).number.data();
+            std::int64_t share = 1;
+            for (std::size_t d = axis; d < axis + dimension; ++d, share *= 9) {
+                factor.first += share * degree * frame[0][d];
+                factor.along += share * (frame[1][d] - frame[0][d]);
+                if (frame.size() == 3) factor.across += share * (frame[2][d] - frame[0][d]);
+            }
+            stride *= simplex_size(degree, whole.dimension[f]);
+            axis += dimension;
+        }
+    }
+    std::size_t operator()(std::int64_t i, std::int64_t j) const {
+        std::size_t index = 0;
+        for (std::size_t f = 0; f < count_; ++f) {
+            const Factor& factor = factor_[f];
+            const auto share =
+                static_cast<std::size_t>(factor.first + i * factor.along + j * factor.across);
+            index += factor.stride * (factor.number == nullptr ? share : factor.number[share]);
+        }
+        return index;
+    }
+
+private:
+    struct Factor {
+        const std::uint16_t* number = nullptr;  // of the coefficient at a share; none: the share
+        std::size_t stride = 1;
+        std::int64_t first = 0, along = 0, across = 0;  // shares as in SimplexIndex::number
+    };
+    std::array<Factor, 3> factor_;
+    std::size_t count_;
 };
 
 }  // namespace
@@ -194,14 +253,7 @@ void take_part(const double* net, int degree, const Factors& whole, std::span<co
     }
     const bool is_triangle = part.count == 1 && part.dimension[0] == 2;
     const std::int64_t rows = frame.size() == 3 ? degree : 0;
-    const auto index = [&](std::int64_t i, std::int64_t j) {
-        Place at{};
-        for (std::size_t d = 0; d < 3; ++d) {
-            at[d] = degree * frame[0][d] + i * (frame[1][d] - frame[0][d]);
-            if (rows > 0) at[d] += j * (frame[2][d] - frame[0][d]);
-        }
-        return net_index(degree, whole, at);
-    };
+    const FrameIndex index(degree, whole, frame);
     for (std::int64_t j = 0; j <= rows; ++j) {
         for (std::int64_t i = 0; i <= (is_triangle ? degree - j : degree); ++i) {
             *out++ = net[index(i, j)];

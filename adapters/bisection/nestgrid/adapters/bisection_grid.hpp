@@ -94,4 +94,16 @@ struct Bisection {
 template <int dim>
 using BisectionGrid = StoredGrid<Bisection<dim>>;
 
+// Compiled in the library.
+extern template class StoredGrid<Bisection<2>>;
+extern template class StoredGrid<Bisection<3>>;
+namespace detail {
+extern template class Rewrite<Bisection<2>>;
+extern template class Rewrite<Bisection<3>>;
+extern template class ErasedHierarchy<BisectionGrid<2>, NodeField<BisectionGrid<2>, float>>;
+extern template class ErasedHierarchy<BisectionGrid<2>, NodeField<BisectionGrid<2>, double>>;
+extern template class ErasedHierarchy<BisectionGrid<3>, NodeField<BisectionGrid<3>, float>>;
+extern template class ErasedHierarchy<BisectionGrid<3>, NodeField<BisectionGrid<3>, double>>;
+}  // namespace detail
+
 }  // namespace nestgrid

@@ -67,4 +67,16 @@ struct Octree {
 template <int dim>
 using OctreeGrid = StoredGrid<Octree<dim>>;
 
+// Compiled in the library.
+extern template class StoredGrid<Octree<2>>;
+extern template class StoredGrid<Octree<3>>;
+namespace detail {
+extern template class Rewrite<Octree<2>>;
+extern template class Rewrite<Octree<3>>;
+extern template class ErasedHierarchy<OctreeGrid<2>, NodeField<OctreeGrid<2>, float>>;
+extern template class ErasedHierarchy<OctreeGrid<2>, NodeField<OctreeGrid<2>, double>>;
+extern template class ErasedHierarchy<OctreeGrid<3>, NodeField<OctreeGrid<3>, float>>;
+extern template class ErasedHierarchy<OctreeGrid<3>, NodeField<OctreeGrid<3>, double>>;
+}  // namespace detail
+
 }  // namespace nestgrid

@@ -90,7 +90,7 @@ private:
     /// The red rule; for a tetrahedron that with the shortest diagonal.
     template <class Tree>
     static std::uint16_t red(Tree& tree, const typename Tree::Element& e) {
-        std::uint64_t diagonal = 0;
+        std::size_t diagonal = 0;
         if (e.shape == Shape::tetrahedron) {
             std::array<Point, 4> x;
             for (std::size_t i = 0; i < 4; ++i) x[i] = tree.position[e.corner[i]];
@@ -98,11 +98,12 @@ private:
             const std::array<double, 3> length{norm(x[0] + x[2] - x[1] - x[3]),
                                                norm(x[0] + x[1] - x[2] - x[3]),
                                                norm(x[0] + x[3] - x[1] - x[2])};
-            for (const std::uint64_t d : {1U, 2U}) {
+            for (const std::size_t d : {1U, 2U}) {
                 if (length[d] < length[diagonal] * (1 - 1e-12)) diagonal = d;
             }
         }
-        const std::uint64_t descriptor = static_cast<std::uint64_t>(e.shape) | diagonal << 4U;
+        const std::uint64_t descriptor =
+            static_cast<std::uint64_t>(e.shape) | std::uint64_t{diagonal} << 4U;
         return tree.table.rule(descriptor, false, [&] { return make_rule(descriptor); });
     }
 
@@ -185,5 +186,27 @@ using RedGreenGrid = StoredGrid<RedGreen<dim>>;
 /// Triangles (2) or tetrahedra (3) only: smaller and faster.
 template <int dim>
 using RedGreenSimplices = StoredGrid<RedGreen<dim, dim + 1>>;
+
+// Compiled in the library.
+extern template class StoredGrid<RedGreen<2>>;
+extern template class StoredGrid<RedGreen<3>>;
+extern template class StoredGrid<RedGreen<2, 3>>;
+extern template class StoredGrid<RedGreen<3, 4>>;
+namespace detail {
+extern template class Rewrite<RedGreen<2>>;
+extern template class Rewrite<RedGreen<3>>;
+extern template class Rewrite<RedGreen<2, 3>>;
+extern template class Rewrite<RedGreen<3, 4>>;
+extern template class ErasedHierarchy<RedGreenGrid<2>, NodeField<RedGreenGrid<2>, float>>;
+extern template class ErasedHierarchy<RedGreenGrid<2>, NodeField<RedGreenGrid<2>, double>>;
+extern template class ErasedHierarchy<RedGreenGrid<3>, NodeField<RedGreenGrid<3>, float>>;
+extern template class ErasedHierarchy<RedGreenGrid<3>, NodeField<RedGreenGrid<3>, double>>;
+extern template class ErasedHierarchy<RedGreenSimplices<2>, NodeField<RedGreenSimplices<2>, float>>;
+extern template class ErasedHierarchy<RedGreenSimplices<2>,
+                                      NodeField<RedGreenSimplices<2>, double>>;
+extern template class ErasedHierarchy<RedGreenSimplices<3>, NodeField<RedGreenSimplices<3>, float>>;
+extern template class ErasedHierarchy<RedGreenSimplices<3>,
+                                      NodeField<RedGreenSimplices<3>, double>>;
+}  // namespace detail
 
 }  // namespace nestgrid

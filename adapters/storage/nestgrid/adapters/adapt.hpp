@@ -22,8 +22,7 @@ public:
 
     explicit Rewrite(Grid& grid) : grid_{grid}, table_{grid.table_}, tree_{table_} {}
 
-    template <class Marker>
-    Adaptation run(Marker& marker) {
+    Adaptation run(const Marker& marker) {
         unpack(marker);
         coarsen();
         tree_.activate();
@@ -50,8 +49,7 @@ public:
 
     /// New number of every node, no_node where a number is not in use.
     std::vector<std::uint32_t> renumber() {
-        const auto keep = [](const Leaf&) { return Mark::keep; };
-        unpack(keep);
+        unpack([](const Leaf&) { return Mark::keep; });
         tree_.activate();
         grid_.family_.close(tree_);
         if constexpr (!Family::conforming) hanging_ = hanging_nodes(tree_);
@@ -76,8 +74,7 @@ public:
     /// \throw GridError, InvalidInput as adaptations do
     bool is_sound() {
         tree_.verify = true;
-        const auto keep = [](const Leaf&) { return Mark::keep; };
-        unpack(keep);
+        unpack([](const Leaf&) { return Mark::keep; });
         tree_.activate();
         for (std::uint32_t e = 0; e < tree_.elements.size(); ++e) tree_.open.push_back(e);
         grid_.family_.close(tree_);
@@ -97,14 +94,10 @@ private:
     static constexpr int max_exits_ = std::max(Family::max_children, 1 << Family::pattern_height);
 
     // Unpacking.
-    template <class Marker>
-    void unpack(Marker& marker);
-    template <class Marker>
-    void unpack(const Element& e, std::uint32_t place, Marker& marker);
-    template <class Marker>
-    Mark ask(const Element& e, Shape shape, int level, Marker& marker);
-    template <class Marker>
-    Mark ask_children(const Element& e, const Rule& rule, int level, Marker& marker);
+    void unpack(const Marker& marker);
+    void unpack(const Element& e, std::uint32_t place, const Marker& marker);
+    Mark ask(const Element& e, Shape shape, int level, const Marker& marker);
+    Mark ask_children(const Element& e, const Rule& rule, int level, const Marker& marker);
 
     void coarsen();
     bool all_children_want_it(const typename Tree::Element& e) const;
@@ -157,8 +150,7 @@ private:
 };
 
 template <class Family>
-template <class Marker>
-void Rewrite<Family>::unpack(Marker& marker) {
+void Rewrite<Family>::unpack(const Marker& marker) {
     const std::size_t coarse_nodes = grid_.coarse_.nodes.size();
     tree_.reserve(grid_.used_node_count_, 2 * grid_.leaf_count_);
     tree_.add_nodes(grid_.node_count_);
@@ -179,8 +171,7 @@ void Rewrite<Family>::unpack(Marker& marker) {
 }
 
 template <class Family>
-template <class Marker>
-void Rewrite<Family>::unpack(const Element& e, std::uint32_t place, Marker& marker) {
+void Rewrite<Family>::unpack(const Element& e, std::uint32_t place, const Marker& marker) {
     const unsigned code = grid_.code_of(e.place);
     const int level = tree_.elements[place].level;
     if (code == 0) {
@@ -204,8 +195,7 @@ void Rewrite<Family>::unpack(const Element& e, std::uint32_t place, Marker& mark
 }
 
 template <class Family>
-template <class Marker>
-Mark Rewrite<Family>::ask(const Element& e, Shape shape, int level, Marker& marker) {
+Mark Rewrite<Family>::ask(const Element& e, Shape shape, int level, const Marker& marker) {
     const std::size_t n = topology(shape).corners;
     std::array<Point, max_corners> x;
     for (std::size_t i = 0; i < n; ++i) x[i] = tree_.position[e.corner[i]];
@@ -214,8 +204,8 @@ Mark Rewrite<Family>::ask(const Element& e, Shape shape, int level, Marker& mark
 
 /// Children made by the closure: refined if one wants it, coarsened if all of them do.
 template <class Family>
-template <class Marker>
-Mark Rewrite<Family>::ask_children(const Element& e, const Rule& rule, int level, Marker& marker) {
+Mark Rewrite<Family>::ask_children(const Element& e, const Rule& rule, int level,
+                                   const Marker& marker) {
     std::array<Element, static_cast<std::size_t>(Grid::max_children)> below;
     typename Grid::Context context;
     grid_.children(e, std::span(below).first(rule.children.size()), context);

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <bit>
+#include <functional>
 #include <optional>
 
 #include <nestgrid/adapters/coarse_checks.hpp>
@@ -24,9 +25,13 @@
 #include <nestgrid/adapters/node_field.hpp>
 #include <nestgrid/adapters/work_tree.hpp>
 #include <nestgrid/detail/constants.hpp>
+#include <nestgrid/detail/erase.hpp>
 #include <nestgrid/optional.hpp>
 
 namespace nestgrid {
+
+/// Tells what to do with a leaf.
+using Marker = std::function<Mark(const Leaf&)>;
 
 /// What an adaptation has done.
 struct Adaptation {
@@ -74,7 +79,8 @@ constexpr std::uint32_t count_ones(std::uint32_t x) {
 }  // namespace detail
 
 /// A nested grid that owns its hierarchy. A family says which shapes and rules there are and what
-/// its closure demands: family.hpp.
+/// its closure demands: family.hpp. Grids of the library's families are compiled in it; others
+/// where they are used.
 template <class Family>
 class StoredGrid {
 public:
@@ -159,8 +165,7 @@ public:
     /// and does what the family's closure demands. Nodes keep their numbers; new ones take free
     /// numbers. Where it throws, the grid is as before.
     /// \throw InvalidInput for a mark that the family does not have
-    template <class Marker>
-    Adaptation adapt(Marker&& marker);
+    Adaptation adapt(const Marker& marker);
 
     Adaptation refine_uniformly() {
         return adapt([](const Leaf&) { return Mark::refine; });
@@ -272,7 +277,7 @@ StoredGrid<Family>::StoredGrid(CoarseGrid coarse, const Family& family, const Co
 }
 
 template <class Family>
-auto StoredGrid<Family>::coarse(std::size_t i) const -> CoarseElement<Element> {
+inline auto StoredGrid<Family>::coarse(std::size_t i) const -> CoarseElement<Element> {
     CoarseElement<Element> c;
     c.shape = coarse_.shapes[i];
     c.orientation = orientation_[i];
@@ -286,8 +291,8 @@ auto StoredGrid<Family>::coarse(std::size_t i) const -> CoarseElement<Element> {
 }
 
 template <class Family>
-std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
-                                                             Context& context) const {
+inline std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
+                                                                    Context& context) const {
     const Place& place = e.place;
     auto& known = context.known(place);
     if (known.place == place) return {known.node.data(), known.count};
@@ -313,8 +318,8 @@ std::span<const std::uint32_t> StoredGrid<Family>::new_nodes(const Element& e,
 }
 
 template <class Family>
-void StoredGrid<Family>::children(const Element& e, std::span<Element> out,
-                                  Context& context) const {
+inline void StoredGrid<Family>::children(const Element& e, std::span<Element> out,
+                                         Context& context) const {
     const unsigned code = code_of(e.place);
     const Pattern::Inner& inner = table_[code].inner[e.place.inner];
     const Rule& rule = *table_.rule(inner.rule).rule;
@@ -336,8 +341,7 @@ void StoredGrid<Family>::children(const Element& e, std::span<Element> out,
 }
 
 template <class Family>
-template <class Marker>
-Adaptation StoredGrid<Family>::adapt(Marker&& marker) {
+Adaptation StoredGrid<Family>::adapt(const Marker& marker) {
     return detail::Rewrite<Family>(*this).run(marker);
 }
 
