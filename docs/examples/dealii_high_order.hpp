@@ -10,11 +10,14 @@
 #include <set>
 
 #include <deal.II/fe/fe_series.h>
+#include <deal.II/grid/grid_refinement.h>
 #include <deal.II/hp/fe_collection.h>
 #include <deal.II/hp/fe_values.h>
 #include <deal.II/hp/q_collection.h>
 #include <deal.II/hp/refinement.h>
+#include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/numerics/smoothness_estimator.h>
 
 #include "dealii_poisson.hpp"

@@ -2,24 +2,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The solver of dealii_poisson.cpp, which knows nothing of nestgrid: Laplace's equation around an
-// edge that reenters, by linear elements and adaptive geometric multigrid.
+// edge that reenters, by linear elements and adaptive geometric multigrid, on one rank of MPI or on
+// several.
 #pragma once
 
 #include <cmath>
 
 #include <deal.II/base/function_lib.h>
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/distributed/grid_refinement.h>
+#include <deal.II/distributed/tria.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/grid_refinement.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/sparsity_tools.h>
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/multigrid/mg_coarse.h>
 #include <deal.II/multigrid/mg_constrained_dofs.h>
 #include <deal.II/multigrid/mg_matrix.h>
@@ -33,6 +38,8 @@
 namespace dealii_poisson {
 
 using namespace dealii;
+using ParallelVector = LinearAlgebra::distributed::Vector<double>;
+using Matrix = TrilinosWrappers::SparseMatrix;
 
 /// r^(2/3) sin(2 phi / 3) around the z axis: harmonic, with infinite gradients at the edge.
 class Exact : public Function<3> {
@@ -64,92 +71,106 @@ public:
     double error() const;
     void refine();
 
-    Triangulation<3> triangulation{Triangulation<3>::limit_level_difference_at_vertices};
+    parallel::distributed::Triangulation<3> triangulation{
+        MPI_COMM_WORLD, Triangulation<3>::limit_level_difference_at_vertices,
+        parallel::distributed::Triangulation<3>::construct_multigrid_hierarchy};
     FE_Q<3> fe{1};
     DoFHandler<3> dofs{triangulation};
-    Vector<double> solution;
+    ParallelVector solution;
 
 private:
-    template <class Cells, class Add>
-    void for_each_cell_matrix(const Cells& cells, const Add& add);
+    template <class Cell, class Add>
+    void add_cell(FEValues<3>& values, const Cell& cell, const Add& add);
 
     const Function<3>* exact;
     AffineConstraints<double> constraints;
-    SparsityPattern sparsity;
-    SparseMatrix<double> matrix;
-    Vector<double> rhs;
+    Matrix matrix;
+    ParallelVector rhs;
     MGConstrainedDoFs mg_constraints;
-    MGLevelObject<SparsityPattern> mg_sparsity, mg_edge_sparsity;
-    MGLevelObject<SparseMatrix<double>> mg_matrix, mg_edge;
+    MGLevelObject<Matrix> mg_matrix, mg_edge;
 };
 
 inline void Laplace::setup() {
     dofs.distribute_dofs(fe);
     dofs.distribute_mg_dofs();
-    solution.reinit(dofs.n_dofs());
-    rhs.reinit(dofs.n_dofs());
-    constraints.clear();
+    const IndexSet own = dofs.locally_owned_dofs();
+    IndexSet relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    solution.reinit(own, relevant, MPI_COMM_WORLD);
+    rhs.reinit(own, relevant, MPI_COMM_WORLD);
+    constraints.reinit(relevant);
     DoFTools::make_hanging_node_constraints(dofs, constraints);
     VectorTools::interpolate_boundary_values(dofs, 0, *exact, constraints);
     constraints.close();
-    DynamicSparsityPattern pattern(dofs.n_dofs());
-    DoFTools::make_sparsity_pattern(dofs, pattern, constraints);
-    sparsity.copy_from(pattern);
-    matrix.reinit(sparsity);
+    const auto reinit = [](Matrix& of, const IndexSet& rows, const IndexSet& needed,
+                           const auto& fill) {
+        DynamicSparsityPattern pattern(needed);
+        fill(pattern);
+        SparsityTools::distribute_sparsity_pattern(pattern, rows, MPI_COMM_WORLD, needed);
+        of.reinit(rows, rows, pattern, MPI_COMM_WORLD, true);
+    };
+    reinit(matrix, own, relevant, [&](DynamicSparsityPattern& pattern) {
+        DoFTools::make_sparsity_pattern(dofs, pattern, constraints);
+    });
 
     mg_constraints.initialize(dofs);
     mg_constraints.make_zero_boundary_constraints(dofs, {0});
-    const unsigned levels = triangulation.n_levels();
+    const unsigned levels = triangulation.n_global_levels();
     mg_matrix.resize(0, levels - 1);
     mg_edge.resize(0, levels - 1);
-    mg_sparsity.resize(0, levels - 1);
-    mg_edge_sparsity.resize(0, levels - 1);
     for (unsigned l = 0; l < levels; ++l) {
-        DynamicSparsityPattern inner(dofs.n_dofs(l));
-        MGTools::make_sparsity_pattern(dofs, inner, l);
-        mg_sparsity[l].copy_from(inner);
-        mg_matrix[l].reinit(mg_sparsity[l]);
-        DynamicSparsityPattern edge(dofs.n_dofs(l));
-        MGTools::make_interface_sparsity_pattern(dofs, mg_constraints, edge, l);
-        mg_edge_sparsity[l].copy_from(edge);
-        mg_edge[l].reinit(mg_edge_sparsity[l]);
+        IndexSet needed;
+        DoFTools::extract_locally_relevant_level_dofs(dofs, l, needed);
+        const IndexSet rows = dofs.locally_owned_mg_dofs(l);
+        reinit(mg_matrix[l], rows, needed, [&](DynamicSparsityPattern& pattern) {
+            MGTools::make_sparsity_pattern(dofs, pattern, l);
+        });
+        reinit(mg_edge[l], rows, needed, [&](DynamicSparsityPattern& pattern) {
+            MGTools::make_interface_sparsity_pattern(dofs, mg_constraints, pattern, l);
+        });
     }
 }
 
-template <class Cells, class Add>
-void Laplace::for_each_cell_matrix(const Cells& cells, const Add& add) {
-    const QGauss<3> quadrature(2);
-    FEValues<3> values(fe, quadrature, update_gradients | update_JxW_values);
+/// Calls add(local) with the matrix of one cell.
+template <class Cell, class Add>
+void Laplace::add_cell(FEValues<3>& values, const Cell& cell, const Add& add) {
     FullMatrix<double> local(fe.dofs_per_cell);
-    for (const auto& cell : cells) {
-        values.reinit(cell);
-        local = 0;
-        for (const unsigned q : values.quadrature_point_indices()) {
-            for (const unsigned i : values.dof_indices()) {
-                for (const unsigned j : values.dof_indices()) {
-                    local(i, j) +=
-                        values.shape_grad(i, q) * values.shape_grad(j, q) * values.JxW(q);
-                }
+    values.reinit(cell);
+    for (const unsigned q : values.quadrature_point_indices()) {
+        for (const unsigned i : values.dof_indices()) {
+            for (const unsigned j : values.dof_indices()) {
+                local(i, j) += values.shape_grad(i, q) * values.shape_grad(j, q) * values.JxW(q);
             }
         }
-        add(cell, local);
     }
+    add(local);
 }
 
+/// Each rank adds its cells, and its cells of the levels.
 inline void Laplace::assemble() {
+    const QGauss<3> quadrature(2);
+    FEValues<3> values(fe, quadrature, update_gradients | update_JxW_values);
     std::vector<types::global_dof_index> index(fe.dofs_per_cell);
     const Vector<double> nothing(fe.dofs_per_cell);
-    for_each_cell_matrix(dofs.active_cell_iterators(), [&](const auto& cell, const auto& local) {
-        cell->get_dof_indices(index);
-        constraints.distribute_local_to_global(local, nothing, index, matrix, rhs);
-    });
-    for (unsigned l = 0; l < triangulation.n_levels(); ++l) {
-        AffineConstraints<double> level;
+    for (const auto& cell : dofs.active_cell_iterators()) {
+        if (!cell->is_locally_owned()) continue;
+        add_cell(values, cell, [&](const auto& local) {
+            cell->get_dof_indices(index);
+            constraints.distribute_local_to_global(local, nothing, index, matrix, rhs);
+        });
+    }
+    matrix.compress(VectorOperation::add);
+    rhs.compress(VectorOperation::add);
+    for (unsigned l = 0; l < triangulation.n_global_levels(); ++l) {
+        IndexSet needed;
+        DoFTools::extract_locally_relevant_level_dofs(dofs, l, needed);
+        AffineConstraints<double> level(needed);
         level.add_lines(mg_constraints.get_refinement_edge_indices(l));
         level.add_lines(mg_constraints.get_boundary_indices(l));
         level.close();
-        for_each_cell_matrix(
-            dofs.mg_cell_iterators_on_level(l), [&](const auto& cell, const auto& local) {
+        for (const auto& cell : dofs.mg_cell_iterators_on_level(l)) {
+            if (cell->level_subdomain_id() != triangulation.locally_owned_subdomain()) continue;
+            add_cell(values, cell, [&](const auto& local) {
                 cell->get_mg_dof_indices(index);
                 level.distribute_local_to_global(local, index, mg_matrix[l]);
                 for (unsigned i = 0; i < index.size(); ++i) {
@@ -160,28 +181,32 @@ inline void Laplace::assemble() {
                     }
                 }
             });
+        }
+        mg_matrix[l].compress(VectorOperation::add);
+        mg_edge[l].compress(VectorOperation::add);
     }
 }
 
 inline unsigned Laplace::solve() {
-    MGTransferPrebuilt<Vector<double>> transfer(mg_constraints);
+    MGTransferPrebuilt<ParallelVector> transfer(mg_constraints);
     transfer.build(dofs);
-    FullMatrix<double> coarse;
-    coarse.copy_from(mg_matrix[0]);
-    MGCoarseGridHouseholder<double, Vector<double>> coarse_solver;
-    coarse_solver.initialize(coarse);
-    mg::SmootherRelaxation<PreconditionSOR<SparseMatrix<double>>, Vector<double>> smoother;
-    smoother.initialize(mg_matrix);
-    smoother.set_steps(2);
-    smoother.set_symmetric(true);
-    const mg::Matrix<Vector<double>> level(mg_matrix), edge(mg_edge);
-    Multigrid<Vector<double>> multigrid(level, coarse_solver, transfer, smoother, smoother);
+    ReductionControl coarse_control(100, 1e-20, 1e-12);
+    SolverCG<ParallelVector> coarse_cg(coarse_control);
+    const PreconditionIdentity nothing;
+    MGCoarseGridIterativeSolver<ParallelVector, SolverCG<ParallelVector>, Matrix,
+                                PreconditionIdentity>
+        coarse_solver(coarse_cg, mg_matrix[0], nothing);
+    MGSmootherPrecondition<Matrix, TrilinosWrappers::PreconditionSSOR, ParallelVector> smoother;
+    smoother.initialize(mg_matrix, TrilinosWrappers::PreconditionSSOR::AdditionalData());
+    const mg::Matrix<ParallelVector> level(mg_matrix), edge(mg_edge);
+    Multigrid<ParallelVector> multigrid(level, coarse_solver, transfer, smoother, smoother);
     multigrid.set_edge_matrices(edge, edge);
-    PreconditionMG<3, Vector<double>, MGTransferPrebuilt<Vector<double>>> preconditioner(
+    PreconditionMG<3, ParallelVector, MGTransferPrebuilt<ParallelVector>> preconditioner(
         dofs, multigrid, transfer);
     SolverControl control(100, 1e-10 * rhs.l2_norm());
-    SolverCG<Vector<double>>(control).solve(matrix, solution, rhs, preconditioner);
+    SolverCG<ParallelVector>(control).solve(matrix, solution, rhs, preconditioner);
     constraints.distribute(solution);  // or the surface would tell, see below
+    solution.update_ghost_values();
     return control.last_step();
 }
 
@@ -189,13 +214,15 @@ inline double Laplace::error() const {
     Vector<float> of_cell(triangulation.n_active_cells());
     VectorTools::integrate_difference(dofs, solution, *exact, of_cell, QGauss<3>(4),
                                       VectorTools::L2_norm);
-    return of_cell.l2_norm();
+    return VectorTools::compute_global_error(triangulation, of_cell, VectorTools::L2_norm);
 }
 
+/// Where the estimate is greatest, 15 % of the cells; then deal.II makes a new partition.
 inline void Laplace::refine() {
     Vector<float> estimate(triangulation.n_active_cells());
     KellyErrorEstimator<3>::estimate(dofs, QGauss<2>(2), {}, solution, estimate);
-    GridRefinement::refine_and_coarsen_fixed_number(triangulation, estimate, 0.15, 0.0);
+    parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(triangulation, estimate,
+                                                                           0.15, 0.0);
     triangulation.execute_coarsening_and_refinement();
 }
 

@@ -4,11 +4,11 @@
 // p4est: a blob carried round by a vortex, by finite volumes of second order on a forest of four
 // octrees that follows it. Every so often the isosurface u = 0.5 is extracted straight from the
 // forest: the means of cells stay where the solver keeps them, in the user data of quadrants, and
-// nothing is open where the size of cells changes.
-//     p4est_advection [steps] [folder for surfaces] [--view]
-// ParaView plays surface.pvd in that folder, also while the solver runs. With --view a page for
-// browsers shows the surface, coloured by the exact solution, which is 0.5 where the solver is
-// right.
+// nothing is open where the size of cells changes, nor where cells of several ranks meet.
+//     [mpirun -n 4] p4est_advection [steps] [folder for surfaces] [--view]
+// ParaView plays surface.pvd in that folder, also while the solver runs. With --view, on one rank,
+// a page for browsers shows the surface, coloured by the exact solution, which is 0.5 where the
+// solver is right.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -19,14 +19,11 @@
 #include <fstream>
 #include <string>
 
-#include <vtkNew.h>
-#include <vtkXMLPolyDataWriter.h>
-
+#include <nestgrid/adapters/mpi_files.hpp>
 #include <nestgrid/adapters/p4est.hpp>
-#include <nestgrid/adapters/vtk_surface.hpp>
 #include <nestgrid/algorithms/cell_data.hpp>
+#include <nestgrid/algorithms/distributed.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
-#include <nestgrid/algorithms/surface_report.hpp>
 
 #include "p4est_advection.hpp"
 #include "solver_page.hpp"
@@ -37,33 +34,37 @@ using namespace p4est_advection;
 
 constexpr int steps_per_surface = 30;
 
-/// Writes files that appear complete, by rename, or not at all.
-template <class Write>
-void publish(const std::string& path, const Write& write) {
-    if (!write(path + ".part")) throw nestgrid::IoError(path + " could not be written");
-    std::filesystem::rename(path + ".part", path);
-}
+/// The surfaces in a folder, which ParaView plays.
+class Film {
+public:
+    explicit Film(const std::string& folder) : folder_{folder} {}
 
-/// Adds a surface to the film in a folder. \param list of the surfaces so far
-template <class Surface>
-void write(const std::string& folder, double time, const Surface& surface, std::string& list) {
-    const auto number = std::count(list.begin(), list.end(), '\n');
-    char name[32];
-    std::snprintf(name, sizeof name, "surface-%04d.vtp", static_cast<int>(number));
-    publish(folder + "/" + name, [&](const std::string& path) {
-        const vtkNew<vtkXMLPolyDataWriter> writer;
-        writer->SetInputData(nestgrid::make_poly_data(surface));
-        writer->SetFileName(path.c_str());
-        return writer->Write() == 1 && writer->GetErrorCode() == 0;
-    });
-    list += "<DataSet timestep=\"" + std::to_string(time) + "\" file=\"" + name + "\"/>\n";
-    publish(folder + "/surface.pvd", [&](const std::string& path) {
-        std::ofstream file(path);
+    template <class Piece>
+    void add(double time, nestgrid::MpiRanks& ranks, const Piece& piece,
+             const nestgrid::JoinedPiece& joined) {
+        char name[32];
+        std::snprintf(name, sizeof name, "surface-%04d.vtp", frames_++);
+        nestgrid::write_vtp(ranks, piece, joined, folder_ + "/" + name);
+        list_ += "<DataSet timestep=\"" + std::to_string(time) + "\" file=\"" + name + "\"/>\n";
+        if (ranks.rank() == 0) write_list();
+    }
+
+private:
+    /// The list appears complete, by rename, or not at all.
+    void write_list() const {
+        const std::string path = folder_ + "/surface.pvd";
+        std::ofstream file(path + ".part");
         file << "<VTKFile type=\"Collection\"><Collection>\n"
-             << list << "</Collection></VTKFile>\n";
-        return !file.flush().fail();
-    });
-}
+             << list_ << "</Collection></VTKFile>\n";
+        file.close();
+        if (!file) throw nestgrid::IoError(path + " could not be written");
+        std::filesystem::rename(path + ".part", path);
+    }
+
+    std::string folder_;
+    std::string list_;
+    int frames_ = 0;
+};
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
     const auto now = std::chrono::steady_clock::now();
@@ -76,15 +77,27 @@ nestgrid::Surface<3> coloured(nestgrid::Surface<3> surface, double time) {
     return surface;
 }
 
-/// \return exit status: 1 where mass is lost, the surface is open, or the time step too long
-int run(long steps, const std::string& folder, const ShowSurface& show) {
-    Advection solver;
-    const double mass = Totals(solver).mass;
-    std::string list;
-    double solving = 0;
+void print_heading() {
     std::printf(
         "step  time leaves levels     mass     drift L1 error      min   max triangles open"
         "   area  volume  ms: surface  solver\n");
+}
+
+void print_line(long step, const Advection& solver, const Totals& now, double drift, double error) {
+    std::printf("%4ld %5.3f %6lld %4d-%d %8.6f %9.1e %8.4f %8.1e %5.3f ", step, solver.time(),
+                static_cast<long long>(solver.forest()->global_num_quadrants),
+                -std::ilogb(now.largest), -std::ilogb(now.smallest), now.mass, drift, error,
+                now.least, now.greatest);
+}
+
+/// \return exit status: 1 where mass is lost, the surface is open, or the time step too long
+int run(long steps, const std::string& folder, const ShowSurface& show) {
+    nestgrid::MpiRanks ranks(MPI_COMM_WORLD);
+    Advection solver;
+    const double mass = Totals(solver).mass;
+    Film film(folder);
+    double solving = 0;
+    if (ranks.rank() == 0) print_heading();
     for (long step = 0; step <= steps; ++step) {
         auto start = std::chrono::steady_clock::now();
         if (step > 0) solver.step();
@@ -93,31 +106,35 @@ int run(long steps, const std::string& folder, const ShowSurface& show) {
 
         // All there is to it: the grid, where a leaf keeps its value, the surface.
         start = std::chrono::steady_clock::now();
-        const nestgrid::P4estGrid grid(solver.forest());
-        const nestgrid::CellAverages field(
-            grid, [&](const auto& leaf) { return cell_of(grid.quadrant(leaf)).u; });
-        const auto surface = nestgrid::isosurface(grid, field, 0.5, {.threshold = 0.01}).surface;
+        const nestgrid::P4estGrid mine(solver.forest());
+        const nestgrid::Distributed grid(mine, ranks);
+        const nestgrid::CellAverages means(
+            grid, [&](const auto& leaf) { return cell_of(mine.quadrant(leaf)).u; });
+        const nestgrid::DistributedField field(grid, means);
+        const auto piece = nestgrid::isosurface(grid, field, 0.5, {.threshold = 0.01});
         const double extracting = milliseconds_since(start);
+
+        const auto joined = nestgrid::join_pieces(piece, grid);
+        const auto whole = nestgrid::measure_pieces(piece, joined, grid).total;
+        const Totals now(solver);
+        const double drift = now.mass / mass - 1;
+        if (ranks.rank() == 0) {
+            print_line(step, solver, now, drift, now.error / mass);
+            std::printf("%9llu %4llu %6.4f %7.5f %12.1f %7.0f\n",
+                        static_cast<unsigned long long>(joined.simplices),
+                        static_cast<unsigned long long>(joined.open), whole.area, whole.volume,
+                        extracting, solving);
+        }
+        solving = 0;
+        if (!(std::abs(drift) < 1e-12 && now.courant < 1) || joined.open > 0) return 1;
         if (show) {
-            show({.surface = coloured(surface, solver.time()),
+            show({.surface = coloured(piece.surface, solver.time()),
                   .field = "exact solution",
                   .step = static_cast<std::uint64_t>(step),
                   .time = solver.time()});
         }
-
-        const Totals now(solver);
-        const double drift = now.mass / mass - 1;
-        const auto report = nestgrid::surface_report(surface);
-        std::printf(
-            "%4ld %5.3f %6zu %4d-%d %8.6f %9.1e %8.4f %8.1e %5.3f %9zu %4zu %6.4f %7.5f "
-            "%12.1f %7.0f\n",
-            step, solver.time(), grid.leaf_count(), -std::ilogb(now.largest),
-            -std::ilogb(now.smallest), now.mass, drift, now.error / mass, now.least, now.greatest,
-            report.triangles, report.open_edges, report.area, report.volume, extracting, solving);
-        solving = 0;
-        if (!(std::abs(drift) < 1e-12 && now.courant < 1) || report.open_edges > 0) return 1;
-        if (!folder.empty()) write(folder, solver.time(), surface, list);
-        if (step == steps && steps % Fineness{}.steps_per_rotation == 0) {
+        if (!folder.empty()) film.add(solver.time(), ranks, piece, joined);
+        if (ranks.rank() == 0 && step == steps && steps % Fineness{}.steps_per_rotation == 0) {
             std::printf("back at the beginning, off by %.1f %% in L1\n", 100 * now.error / mass);
         }
     }
@@ -140,7 +157,7 @@ int main(int argc, char** argv) {
             argc > 1 ? std::strtol(argv[1], &end, 10) : Fineness{}.steps_per_rotation;
         const std::string folder = argc > 2 ? argv[2] : "";
         using nestgrid::InvalidInput;
-        if (processes > 1) throw InvalidInput("this example runs in one process");
+        if (views && processes > 1) throw InvalidInput("--view needs a run on one rank");
         if (argc > 3) throw InvalidInput("there are more arguments than [steps] [folder] [--view]");
         if (steps < 1 || (end != nullptr && *end != '\0')) {
             throw InvalidInput(std::string("this is not a number of steps: ") + argv[1]);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The solver of p4est_advection.cpp, which knows nothing of nestgrid: finite volumes of second
-// order on a forest that follows the solution. The means of cells are in the user data of
-// quadrants.
+// order on a forest that follows the solution, on one rank of MPI or on several. The means of cells
+// are in the user data of quadrants.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,11 @@
 #include <cmath>
 #include <memory>
 #include <new>
+#include <vector>
 
 #include <p8est_bits.h>
 #include <p8est_extended.h>
+#include <p8est_ghost.h>
 #include <p8est_iterate.h>
 
 namespace p4est_advection {
@@ -139,18 +141,48 @@ inline int may_coarsen(p8est_t* forest, p4est_topidx_t, p8est_quadrant_t* family
            std::all_of(family, family + P8EST_CHILDREN, is_flat);
 }
 
-// What p4est calls for faces.
+/// Copies of the cells around those of this rank, which other ranks have.
+class Ghosts {
+public:
+    /// They are those of the forest as it is.
+    void find(p8est_t* forest) {
+        layer_.reset(p8est_ghost_new(forest, P8EST_CONNECT_FULL));
+        cells_.resize(layer_->ghosts.elem_count);
+    }
+    void copy(p8est_t* forest) { p8est_ghost_exchange_data(forest, layer_.get(), cells_.data()); }
+
+    p8est_ghost_t* layer() const { return layer_.get(); }
+    Cell& operator[](p4est_locidx_t i) { return cells_[static_cast<std::size_t>(i)]; }
+
+private:
+    std::unique_ptr<p8est_ghost_t, decltype(&p8est_ghost_destroy)> layer_{nullptr,
+                                                                          p8est_ghost_destroy};
+    std::vector<Cell> cells_;
+};
+
+// What p4est calls for faces of cells of this rank.
+
+struct FaceCall {
+    Ghosts* ghosts;
+    double time_step;
+};
 
 /// The cells on one side of a face: one, or the four smaller ones where the face hangs.
 struct Side {
     std::size_t face;  ///< number of the face on these cells: 0 and 1 normal to x, and so on
     std::array<Cell*, 4> cells;  ///< four times the same where it is one
 
-    Side(p8est_iter_face_info_t& info, int number) {
+    Side(p8est_iter_face_info_t& info, int number, Ghosts& ghosts) {
         const auto& side = *p8est_iter_fside_array_index_int(&info.sides, number);
         face = static_cast<std::size_t>(side.face);
+        const auto cell = [&](bool is_ghost, p8est_quadrant_t* q, p4est_locidx_t i) {
+            return is_ghost ? &ghosts[i] : &cell_of(*q);
+        };
         for (std::size_t i = 0; i < 4; ++i) {
-            cells[i] = &cell_of(side.is_hanging ? *side.is.hanging.quad[i] : *side.is.full.quad);
+            const auto& [are_ghosts, quad, numbers] = side.is.hanging;
+            cells[i] = side.is_hanging ? cell(are_ghosts[i] != 0, quad[i], numbers[i])
+                                       : cell(side.is.full.is_ghost != 0, side.is.full.quad,
+                                              side.is.full.quadid);
         }
     }
     double mean() const { return (cells[0]->u + cells[1]->u + cells[2]->u + cells[3]->u) / 4; }
@@ -159,11 +191,12 @@ struct Side {
     }
 };
 
-inline void find_slope(p8est_iter_face_info_t* info, void*) {
-    const Side a(*info, 0);
+inline void find_slope(p8est_iter_face_info_t* info, void* user_data) {
+    Ghosts& ghosts = *static_cast<const FaceCall*>(user_data)->ghosts;
+    const Side a(*info, 0, ghosts);
     if (info->sides.elem_count == 1) return a.set_slope(0);  // a wall
     // The middle of four smaller cells lies straight across from that of the larger one.
-    const Side b(*info, 1);
+    const Side b(*info, 1, ghosts);
     const std::size_t axis = a.face / 2;
     const double distance = b.cells[0]->centre[axis] - a.cells[0]->centre[axis];
     const double slope = (b.mean() - a.mean()) / distance;
@@ -175,9 +208,9 @@ inline void find_slope(p8est_iter_face_info_t* info, void*) {
 /// the face in the middle of the step.
 inline void exchange(p8est_iter_face_info_t* info, void* user_data) {
     if (info->sides.elem_count == 1) return;
-    const double time_step = *static_cast<const double*>(user_data);
-    const Side first(*info, 0);
-    const Side second(*info, 1);
+    const auto [ghosts, time_step] = *static_cast<const FaceCall*>(user_data);
+    const Side first(*info, 0, *ghosts);
+    const Side second(*info, 1, *ghosts);
     const std::size_t axis = first.face / 2;
     const bool upwards = first.face % 2 == 1;
     const Side& lower_side = upwards ? first : second;
@@ -222,6 +255,7 @@ public:
                   p8est_destroy} {
         for (int level = fineness.coarsest; level <= fineness.finest; ++level) {
             if (level > fineness.coarsest) adapt();
+            ghosts_.find(forest());
             for_each_cell(forest(), [](Cell& cell) { cell.u = exact(cell.centre, 0); });
         }
     }
@@ -230,10 +264,13 @@ public:
     p8est_t* forest() const { return forest_.get(); }
 
     void step() {
-        if (++steps_ % steps_per_adaptation == 0) adapt();
-        double time_step = fineness_.time_step();
-        p8est_iterate(forest(), nullptr, nullptr, nullptr, find_slope, nullptr, nullptr);
-        p8est_iterate(forest(), nullptr, &time_step, nullptr, exchange, nullptr, nullptr);
+        if (++steps_ % steps_per_adaptation == 0) {
+            adapt();
+            ghosts_.find(forest());
+        }
+        find_slopes();
+        ghosts_.copy(forest());
+        for_each_face(exchange);
         for_each_cell(forest(), [](Cell& cell) {
             cell.u += cell.gain / cell.volume();
             cell.gain = 0;
@@ -242,19 +279,31 @@ public:
     double time() const { return static_cast<double>(steps_) * fineness_.time_step(); }
 
 private:
+    void for_each_face(p8est_iter_face_t function) {
+        FaceCall call{&ghosts_, fineness_.time_step()};
+        p8est_iterate(forest(), ghosts_.layer(), &call, nullptr, function, nullptr, nullptr);
+    }
+    void find_slopes() {
+        ghosts_.copy(forest());
+        for_each_face(find_slope);
+    }
+    /// The ranks have about as many cells each afterwards.
     void adapt() {
-        p8est_iterate(forest(), nullptr, nullptr, nullptr, find_slope, nullptr, nullptr);
+        find_slopes();
         p8est_coarsen_ext(forest(), 0, 0, may_coarsen, create, replace);
         p8est_refine_ext(forest(), 0, fineness_.finest, must_refine, create, replace);
         p8est_balance_ext(forest(), P8EST_CONNECT_FULL, create, replace);
+        p8est_partition(forest(), 1, nullptr);
     }
 
     Fineness fineness_;
     std::unique_ptr<p8est_connectivity_t, decltype(&p8est_connectivity_destroy)> trees_;
     std::unique_ptr<p8est_t, decltype(&p8est_destroy)> forest_;
+    Ghosts ghosts_;
     long steps_ = 0;
 };
 
+/// Of the cells of all ranks.
 struct Totals {
     double mass = 0, error = 0;  ///< error: from the exact solution in the L1 norm
     double least = 1, greatest = 0;
@@ -275,6 +324,19 @@ struct Totals {
             const double crossed = (std::abs(v[0]) + std::abs(v[1])) * time_step;
             courant = std::max(courant, crossed / cell.size);
         });
+        reduce(solver.forest()->mpicomm, sc_MPI_SUM, {&mass, &error});
+        reduce(solver.forest()->mpicomm, sc_MPI_MIN, {&least, &smallest});
+        reduce(solver.forest()->mpicomm, sc_MPI_MAX, {&greatest, &largest, &courant});
+    }
+
+private:
+    static void reduce(sc_MPI_Comm communicator, sc_MPI_Op operation,
+                       std::initializer_list<double*> numbers) {
+        for (double* number : numbers) {
+            double all = 0;
+            sc_MPI_Allreduce(number, &all, 1, sc_MPI_DOUBLE, operation, communicator);
+            *number = all;
+        }
     }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <deal.II/base/multithread_info.h>
+#include <deal.II/base/mpi.h>
 
 #include <nestgrid/adapters/dealii.hpp>
 
@@ -27,7 +27,9 @@ bool on_boundary_of_l(const nestgrid::Point& x) {
 }  // namespace
 
 void slices_dealii(bool quick) {
-    dealii::MultithreadInfo::set_thread_limit(1);
+    int argc = 0;
+    char** argv = nullptr;
+    const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
     const Charge charge;
     dealii_poisson::Laplace problem(charge);
     const unsigned cells = quick ? 2'000 : 100'000;
