@@ -4,18 +4,16 @@
 // Slices of distributed grids, and isosurfaces with vertices at nodes: the pieces of all ranks,
 // after merging, are what one rank draws.
 #include <cstdio>
-#include <cstdlib>
 
 #include <nestgrid/algorithms/boundary_surface.hpp>
 
+#include "long_run.hpp"
 #include "program_judge.hpp"
 #include "sample_grids.hpp"
 
 using namespace nestgrid_test;
 
 namespace {
-
-bool is_long() { return std::getenv("NESTGRID_LONG_TESTS") != nullptr; }
 
 /// What is drawn: a slice by a function, or where there is none an isosurface at nodes.
 struct Request {
@@ -102,7 +100,7 @@ void on_family(const char* name, Tally& all, bool curved = false) {
         for (unsigned data = 0; data < 3; ++data) {
             auto requests = requests_on(whole, 20, random, tally);
             const Judge judge(whole, some_values(whole, ++seed), {std::move(requests)});
-            for (unsigned i = 0; i < (is_long() ? 20U : 4U); ++i) {
+            for (unsigned i = 0; i < (is_long_run() ? 20U : 4U); ++i) {
                 const Cutting cut = some_cutting(seed + i, random);
                 judge.compare(cut, whole.partition(cut.ranks, cut.how, random), tally);
             }

@@ -3,13 +3,13 @@
 //
 // Surfaces of distributed grids: the pieces of all ranks are the surface of one rank.
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include <nestgrid/check_grid.hpp>
 
 #include "anisotropic_grids.hpp"
 #include "distributed_judge.hpp"
+#include "long_run.hpp"
 #include "refusal.hpp"
 #include "sample_grids.hpp"
 
@@ -18,8 +18,6 @@ using namespace nestgrid_test;
 namespace {
 
 constexpr std::array six_thresholds{0.0, 0.05, 0.1, 0.3, 0.7, 1.5};
-
-bool is_long() { return std::getenv("NESTGRID_LONG_TESTS") != nullptr; }
 
 enum class Data { noise, gyroid, integers, plateaus };
 constexpr std::array all_data{Data::noise, Data::gyroid, Data::integers, Data::plateaus};
@@ -95,7 +93,7 @@ Mark in_two_directions(const Leaf& leaf) {
 template <class Family, class Mark_>
 void on_family(const char* name, const Mark_& mark, Runs& all, bool curved = false) {
     constexpr int dim = Family::Grid::dimension;
-    const unsigned cuttings = is_long() ? 60 : 9;
+    const unsigned cuttings = is_long_run() ? 60 : 9;
     Runs runs;
     unsigned seed = 1;
     std::size_t leaves = 0;
@@ -147,7 +145,7 @@ TEST(Distributed, PiecesAreTheSurfaceOfOneRank) {
     on_family<BisectionTriangles>("curved bisected triangles", in_all_directions, all, true);
     std::printf("surfaces drawn by ranks and compared: %llu\n",
                 static_cast<unsigned long long>(all.surfaces));
-    EXPECT_GE(all.surfaces, is_long() ? 20000U : 3000U);
+    EXPECT_GE(all.surfaces, is_long_run() ? 20000U : 3000U);
 }
 
 /// What each rank of a cutting says when it finds out which nodes it shares; empty where nothing.
@@ -166,7 +164,7 @@ TEST(Distributed, AnisotropicGridsAreDrawnOrRefusedAsOnOneRank) {
     unsigned refused_grids = 0;
     unsigned refused_runs = 0;
     unsigned drawn_grids = 0;
-    for (unsigned seed = 0; seed < (is_long() ? 2000U : 250U); ++seed) {
+    for (unsigned seed = 0; seed < (is_long_run() ? 2000U : 250U); ++seed) {
         std::mt19937 random(seed);
         const Forest<3> forest = random_anisotropic_grid(random);
         const Whole whole(forest);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Curved leaves: surfaces are closed, and within both of their bounds.
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +13,7 @@
 
 #include "curved_world.hpp"
 #include "high_order_judge.hpp"
+#include "long_run.hpp"
 #include "refusal.hpp"
 #include "same_surface.hpp"
 #include "table_in_c.hpp"
@@ -29,9 +29,7 @@ using CurvedBoxes = DrawnWorld<CurvedWorld<DegreeWorld<dim>>, DegreeField<dim>>;
 template <int dim>
 using CurvedShapes = DrawnWorld<CurvedWorld<ShapeWorld<dim>>, ShapeField<dim>>;
 
-unsigned count_of_curved_worlds() {
-    return std::getenv("NESTGRID_LONG_TESTS") != nullptr ? 1000 : 20;
-}
+unsigned count_of_curved_worlds() { return is_long_run() ? 1000 : 20; }
 
 /// Points of triangles are within position_bound of points at which U is within error_bound of the
 /// isovalue: looked for along the gradient of U.

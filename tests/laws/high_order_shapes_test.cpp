@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Data of higher degree on triangles, tetrahedra and prisms, and where shapes meet.
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -13,6 +12,7 @@
 #include <nestgrid/check_grid.hpp>
 
 #include "high_order_judge.hpp"
+#include "long_run.hpp"
 #include "same_surface.hpp"
 #include "shape_world.hpp"
 #include "thread_executor.hpp"
@@ -25,9 +25,7 @@ namespace {
 template <int dim>
 using OnShapes = DrawnWorld<ShapeWorld<dim>, ShapeField<dim>>;
 
-std::size_t count_of_shape_worlds() {
-    return std::getenv("NESTGRID_LONG_TESTS") != nullptr ? 3000 : 40;
-}
+std::size_t count_of_shape_worlds() { return is_long_run() ? 3000 : 40; }
 
 /// p = 1 to 8, equal and at random, conforming and hanging to two levels, with and without jumps.
 WorldOptions random_shape_world(std::mt19937& random, unsigned seed) {
@@ -97,7 +95,7 @@ TEST(HighOrderShapes, QuadraticsOnTetrahedraAreSpheres) {
 TEST(HighOrderShapes, IslandsInOneTetrahedronAreFound) {
     std::mt19937 random(5);
     const double radius = 0.1;
-    for (int i = 0; i < 1000 && !HasFailure();) {
+    for (int i = 0; i < cases(250, 1000) && !HasFailure();) {
         Point middle;
         for (double& x : middle) x = 2 * uniform(random) - 1;
         const double beyond = (-1 - middle[0] - middle[1] - middle[2]) / std::sqrt(3.0);

@@ -3,7 +3,6 @@
 //
 // Data of higher degree: surfaces are closed across degrees, sizes and jumps, and the printed bound
 // holds and keeps the tolerance.
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -17,6 +16,7 @@
 #include "closedness.hpp"
 #include "degree_world.hpp"
 #include "high_order_judge.hpp"
+#include "long_run.hpp"
 #include "same_surface.hpp"
 #include "thread_executor.hpp"
 
@@ -28,7 +28,7 @@ namespace {
 template <int dim>
 using Drawn = DrawnWorld<DegreeWorld<dim>, DegreeField<dim>>;
 
-int count_of_worlds() { return std::getenv("NESTGRID_LONG_TESTS") != nullptr ? 10000 : 300; }
+int count_of_worlds() { return cases(300, 10000); }
 
 /// A world of every kind: p = 1 to 8, equal and at random, conforming and hanging to three levels,
 /// with and without jumps.
@@ -133,7 +133,7 @@ TEST(HighOrder, QuadraticsAreSpheres) { expect_round(Drawn<3>(quadratics, square
 TEST(HighOrder, IslandsInOneCellAreFound) {
     std::mt19937 random(5);
     const double radius = 0.1;  // h / 20
-    for (int i = 0; i < 1000 && !HasFailure(); ++i) {
+    for (int i = 0; i < cases(250, 1000) && !HasFailure(); ++i) {
         Point middle;
         for (double& x : middle) x = 1.7 * uniform(random) - 0.85;
         const Drawn<3> drawn(WorldOptions{.cells = 1}, [&](const Point& x) {

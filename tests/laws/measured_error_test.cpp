@@ -23,7 +23,8 @@ using namespace nestgrid_test;
 namespace measured_error_test {
 
 constexpr double rounding = 1e-9;
-constexpr double cut_distance = 0x1p-19;  // of vertices from nodes, in parts of an edge
+constexpr std::size_t sample_points = 150;  // on each surface, and those at its triangles
+constexpr double cut_distance = 0x1p-19;    // of vertices from nodes, in parts of an edge
 
 engine::Triangle corners_of(const Surface<3>& s, std::size_t triangle) {
     const auto& [a, b, c] = s.simplices[triangle];
@@ -60,24 +61,26 @@ TYPED_TEST(MeasuredErrors, LieBelowBoundsAndAreSymmetric) {
             const auto h = erase(grid, field);
             const HierarchicalIndicator indicator(h, NodeError::deviation);
             const auto whole = isosurface<3>(h, 0.0).surface;
-            const MeasuredError none = measure_error(h, whole, whole, 0.0, 500);
+            const MeasuredError none = measure_error(h, whole, whole, 0.0, sample_points);
             EXPECT_LE(std::max(none.distance.greatest, none.back.greatest), rounding);
             const double range = indicator.greatest() - indicator.least();
             for (const double part : {0.0, 0.1, 0.3}) {
                 const auto drawn = isosurface<3>(h, 0.0, under(indicator, part * range));
-                const MeasuredError error = measure_error(h, drawn.surface, whole, 0.0, 500);
+                const MeasuredError error =
+                    measure_error(h, drawn.surface, whole, 0.0, sample_points);
                 EXPECT_LE(error.value.greatest,
                           drawn.error_bound * (1 + rounding) + cut_distance * range);
                 for (const Measured& m : {error.value, error.distance, error.back}) {
                     EXPECT_LE(m.mean, m.rms * (1 + rounding));
                     EXPECT_LE(m.rms, m.greatest * (1 + rounding));
                 }
-                const MeasuredError turned = measure_error(h, whole, drawn.surface, 0.0, 500);
+                const MeasuredError turned =
+                    measure_error(h, whole, drawn.surface, 0.0, sample_points);
                 expect_equal(error.distance, turned.back);
                 expect_equal(error.back, turned.distance);
                 for (const int threads : {2, 3}) {
-                    const MeasuredError same =
-                        measure_error(h, drawn.surface, whole, 0.0, 500, {ThreadExecutor(threads)});
+                    const MeasuredError same = measure_error(
+                        h, drawn.surface, whole, 0.0, sample_points, {ThreadExecutor(threads)});
                     expect_equal(error.value, same.value);
                     expect_equal(error.distance, same.distance);
                     expect_equal(error.back, same.back);

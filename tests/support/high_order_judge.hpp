@@ -4,12 +4,11 @@
 // What every surface of data of higher degree must be: within its bound, which keeps the tolerance.
 #pragma once
 
-#include <cstdlib>
-
 #include <nestgrid/algorithms/high_order.hpp>
 #include <nestgrid/algorithms/isosurface.hpp>
 
 #include "closedness.hpp"
+#include "long_run.hpp"
 
 namespace nestgrid_test {
 
@@ -106,7 +105,7 @@ void expect_round(const Drawn& drawn) {
     const double radius = 0.8;
     for (const double relative : {1e-2, 1e-3, 1e-4}) {
         // Millions of triangles.
-        if (dim == 3 && relative < 1e-3 && std::getenv("NESTGRID_LONG_TESTS") == nullptr) continue;
+        if (dim == 3 && relative < 1e-3 && !is_long_run()) continue;
         const double tolerance = radius * radius * (1 - (1 - relative) * (1 - relative));
         const auto result = drawn.surface(radius * radius, {tolerance, 9});
         expect_closed(result.surface);
