@@ -116,7 +116,8 @@ void require_masks(vtkHyperTreeGrid& grid) {
 bool trees_fill_boxes(vtkHyperTreeGrid& grid) {
     require_masks(grid);
     vtkUnsignedCharArray* const ghosts = grid.GetGhostCells();
-    for (vtkIdType i = 0; i <= grid.GetGlobalNodeIndexMax(); ++i) {
+    const vtkIdType last = grid.GetGlobalNodeIndexMax();  // asks each tree
+    for (vtkIdType i = 0; i <= last; ++i) {
         if (grid.HasMask() && grid.GetMask()->GetValue(i) != 0) return false;
         if (ghosts != nullptr && ghosts->GetValue(i) != 0) return false;
     }
