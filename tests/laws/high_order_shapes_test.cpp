@@ -95,7 +95,7 @@ TEST(HighOrderShapes, QuadraticsOnTetrahedraAreSpheres) {
 TEST(HighOrderShapes, IslandsInOneTetrahedronAreFound) {
     std::mt19937 random(5);
     const double radius = 0.1;
-    for (int i = 0; i < cases(250, 1000) && !HasFailure();) {
+    for (int i = 0; i < 1000 && !HasFailure();) {
         Point middle;
         for (double& x : middle) x = 2 * uniform(random) - 1;
         const double beyond = (-1 - middle[0] - middle[1] - middle[2]) / std::sqrt(3.0);

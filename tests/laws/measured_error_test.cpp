@@ -23,7 +23,7 @@ using namespace nestgrid_test;
 namespace measured_error_test {
 
 constexpr double rounding = 1e-9;
-constexpr std::size_t sample_points = 150;  // on each surface, and those at its triangles
+constexpr std::size_t sample_points = 500;  // on each surface, and those at its triangles
 constexpr double cut_distance = 0x1p-19;    // of vertices from nodes, in parts of an edge
 
 engine::Triangle corners_of(const Surface<3>& s, std::size_t triangle) {

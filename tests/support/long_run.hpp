@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: the nestgrid authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random cases are few in a usual run, and many where the environment has NESTGRID_LONG_TESTS.
+// Some random cases are few in a usual run, and many where the environment has NESTGRID_LONG_TESTS.
 #pragma once
 
 #include <cstdlib>
